@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * From a vector or a tensor to the symmetric positive definite metric that noise is measured with
+ * (Rice, supplementary, section 1; surfaces and strength: Documentation/noise-model.md).
+ *
+ * All metrics of this kernel have the form G = b I + (k - b) u uT + (e - b) m mT: eigenvalue k along
+ * the flow u, e along a second axis m (the normal of a surface, or the minor axis of a tensor) and b
+ * across. Distances along u are short, so features stretch along it.
+ */
+#ifndef MetricTensor_h
+#define MetricTensor_h
+
+#include "NoiseParameters.h"
+#include "Surflet.h"
+
+#include <Eigen/Core>
+
+namespace steerable
+{
+template <int N>
+using Matrix = Eigen::Matrix<double, N, N>;
+
+/// Eigenvalues of the metric along the flow and across it.
+struct EigenvalueRange
+{
+  double Along;
+  double Across;
+};
+
+/// k = MinimumEigenvalue / (Quality + 1), b = (EigenvalueSum - k) / (N - 1) - 1e-4, never below k.
+EigenvalueRange VectorEigenvalues(const NoiseParameters& parameters, int dimension);
+
+/// On a surface the normal takes 0.5 of the trace and the one direction across gets the rest.
+EigenvalueRange SurfaceEigenvalues(const NoiseParameters& parameters);
+constexpr double SurfaceNormalEigenvalue = 0.5;
+
+template <int N>
+struct AxialMetric
+{
+  /// u: unit vector along the flow; the first axis where there is no direction.
+  Vector<N> Direction = Vector<N>::UnitX();
+  /// m: unit vector, orthogonal to u.
+  Vector<N> SecondAxis = Vector<N>::UnitY();
+  double Along = 1.0;
+  double Across = 1.0;
+  double Second = 1.0;
+  /// Curvature vector of the streamline in cells, at most 1 long.
+  Vector<N> Bend = Vector<N>::Zero();
+  /// No direction could be had (zero, NaN, infinite or isotropic input): the metric is I.
+  bool Degenerate = true;
+
+  Matrix<N> ToMatrix() const
+  {
+    return this->Across * Matrix<N>::Identity() +
+      (this->Along - this->Across) * this->Direction * this->Direction.transpose() +
+      (this->Second - this->Across) * this->SecondAxis * this->SecondAxis.transpose();
+  }
+};
+
+/// Strength in [0, 1] of a vector or tensor of this magnitude.
+double StrengthOf(const NoiseParameters& parameters, double magnitude);
+
+/// Section 2: the closed form of the supplementary's eigenvalue remap.
+template <int N>
+AxialMetric<N> MetricFromVector(const NoiseParameters& parameters, const Vector<N>& vector);
+
+/// In-plane vector of a surface with this unit normal; the vector is projected on the tangent plane.
+AxialMetric<3> MetricFromSurfaceVector(
+  const NoiseParameters& parameters, const Vector<3>& vector, const Vector<3>& normal);
+
+/**
+ * Symmetric part of a tensor through Eigen's direct solver; the eigenvalues are mapped linearly onto
+ * [k, b] so that the largest becomes k.
+ */
+template <int N>
+AxialMetric<N> MetricFromTensor(const NoiseParameters& parameters, const Matrix<N>& tensor);
+
+/**
+ * Bends the metric along the streamline's parabola: curvature d in 1/cells, |d| clamped to 1, the
+ * half-length limited to the radius of curvature, and isotropic as |d| reaches 1 (section 4).
+ */
+template <int N>
+void ApplyCurvature(AxialMetric<N>& metric, const Vector<N>& curvature);
+
+/// Share of the anisotropy across the flow that a streamline of curvature |d| <= 1 keeps.
+inline double CurvatureKeeps(double curvatureSquared)
+{
+  return 1.0 - curvatureSquared;
+}
+} // namespace steerable
+
+#endif

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SteerableNoise.h"
+
+#include "LatticeHash.h"
+#include "MetricTensor.h"
+#include "SteerableNoiseStages.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+// Highway includes this file once more for every SIMD level and picks one at run time. Levels that
+// cannot hold registers in arrays (scalable vectors) are left out, and so are near-copies of others.
+#define HWY_DISABLED_TARGETS \
+  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "SteerableNoise.cxx"
+#include <hwy/foreach_target.h>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+#include "SteerableNoiseSimd-inl.h"
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace steerable
+{
+HWY_EXPORT(EvaluateImage2);
+HWY_EXPORT(EvaluateImage3);
+HWY_EXPORT(EvaluatePoints2);
+HWY_EXPORT(EvaluatePoints3);
+
+namespace
+{
+NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field, bool curved)
+{
+  if ((field.Vectors == nullptr) == (field.Tensors == nullptr))
+  {
+    throw std::invalid_argument("The noise needs vectors or tensors, one of the two.");
+  }
+  if (field.Normals && (dimension != 3 || !field.Vectors))
+  {
+    throw std::invalid_argument("Normals need vectors in 3D.");
+  }
+
+  NoiseSetup setup;
+  setup.Parameters = p;
+  setup.Dimension = dimension;
+  double amplitude = 1.0;
+  double frequency = 1.0;
+  double power = 0.0;
+  for (int i = 0; i < p.Octaves; ++i)
+  {
+    OctaveSetup octave;
+    octave.CellsPerUnit = frequency / p.FeatureSize;
+    octave.FeatureSize = static_cast<float>(p.FeatureSize / frequency);
+    octave.Amplitude = static_cast<float>(amplitude);
+    octave.Seed = HashOfSeed(p.Seed + i);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      octave.Period[axis] = p.Period[axis] * std::llround(frequency);
+    }
+    setup.Octaves.push_back(octave);
+    power += amplitude * amplitude;
+    amplitude *= p.Gain;
+    frequency *= p.Lacunarity;
+  }
+  setup.OctaveScale = static_cast<float>(1.0 / std::sqrt(power));
+
+  setup.Support = static_cast<float>(FadeSupport(p.Interpolant));
+  setup.WindowReach =
+    p.LatticeWindow ? setup.Support * (p.Quality + 1) : std::numeric_limits<float>::infinity();
+  setup.Variant = p.Surflet != Basis::Gradient || p.Interpolant != Fade::Quintic ||
+    p.Window != Falloff::Separable || p.Grid != Lattice::Square ||
+    p.Gradients != GradientSet::Uniform || p.Motion || !p.AnisotropicWeight;
+  setup.Biaxial = dimension == 3 && (field.Tensors || field.Normals);
+  setup.Curved = curved;
+  setup.SingleCell = p.Quality == 0 && p.LatticeWindow && !setup.Biaxial && !curved &&
+    p.Normalize == Normalization::None;
+  const bool jittered = p.Grid == Lattice::Jittered;
+  const bool streaks = p.Surflet == Basis::Streaks && !jittered;
+  setup.JitterDown = streaks ? 0.5f : 0.0f;
+  setup.JitterUp = jittered ? 1.0f : setup.JitterDown;
+  setup.JitterRadius = setup.JitterUp * std::sqrt(static_cast<float>(dimension));
+  const Matrix<3> steps3 = LatticeSteps<3>(p.Grid);
+  const Matrix<2> steps2 = LatticeSteps<2>(p.Grid);
+  Matrix<3> steps = Matrix<3>::Identity();
+  if (dimension == 2)
+  {
+    steps.topLeftCorner<2, 2>() = steps2;
+  }
+  else
+  {
+    steps = steps3;
+  }
+  const Matrix<3> indices = steps.inverse();
+  for (int i = 0; i < 3; ++i)
+  {
+    for (int j = 0; j < 3; ++j)
+    {
+      setup.LatticeSteps[i][j] = steps(i, j);
+      setup.LatticeIndices[i][j] = indices(i, j);
+    }
+  }
+  return setup;
+}
+} // namespace
+
+SteerableNoise::SteerableNoise(const NoiseParameters& parameters, int dimension)
+  : Parameters(parameters)
+  , Dimension(dimension)
+{
+  parameters.Validate();
+  if (dimension != 2 && dimension != 3)
+  {
+    throw std::invalid_argument("The noise has 2 or 3 dimensions.");
+  }
+}
+
+EvaluationCounts SteerableNoise::EvaluateImage(const ImageGrid& grid, const Field& field,
+  std::size_t rowBegin, std::size_t rowEnd, float* noise) const
+{
+  if (field.Normals || field.Curvature)
+  {
+    throw std::invalid_argument("An image takes neither normals nor curvature.");
+  }
+  const NoiseSetup setup =
+    MakeSetup(this->Parameters, this->Dimension, field, this->Parameters.FollowCurvature);
+  return this->Dimension == 2
+    ? HWY_DYNAMIC_DISPATCH(EvaluateImage2)(setup, grid, field, rowBegin, rowEnd, noise)
+    : HWY_DYNAMIC_DISPATCH(EvaluateImage3)(setup, grid, field, rowBegin, rowEnd, noise);
+}
+
+EvaluationCounts SteerableNoise::EvaluatePoints(const TupleReader<double>& positions,
+  const Field& field, std::size_t begin, std::size_t end, float* noise) const
+{
+  const NoiseSetup setup = MakeSetup(this->Parameters, this->Dimension, field,
+    this->Parameters.FollowCurvature && field.Curvature != nullptr);
+  return this->Dimension == 2
+    ? HWY_DYNAMIC_DISPATCH(EvaluatePoints2)(setup, positions, field, begin, end, noise)
+    : HWY_DYNAMIC_DISPATCH(EvaluatePoints3)(setup, positions, field, begin, end, noise);
+}
+} // namespace steerable
+#endif

@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What the stages of the fast path hand to each other (private to SteerableNoise.cxx). The names are
+ * those of SteerableNoiseReference: u and m the axes of the metric, k, b and e its eigenvalues along,
+ * across and on the second axis, v a corner minus the point, q its squared distance.
+ */
+#ifndef SteerableNoiseStages_h
+#define SteerableNoiseStages_h
+
+#include "MetricTensor.h"
+#include "SteerableNoise.h"
+
+#include <vector>
+
+namespace steerable
+{
+/// Samples that go through the stages together: their arrays stay in the first-level cache.
+constexpr std::size_t BlockSize = 256;
+/// A block with one sample to either side, and room for a whole SIMD register behind.
+constexpr std::size_t BlockRoom = BlockSize + 2 + 32;
+
+/// One octave: everything that is constant over all samples.
+struct OctaveSetup
+{
+  double CellsPerUnit;
+  float FeatureSize;
+  float Amplitude;
+  std::uint32_t Seed;
+  std::array<std::int64_t, 3> Period;
+};
+
+/// Everything that is constant over all samples and octaves.
+struct NoiseSetup
+{
+  NoiseParameters Parameters;
+  int Dimension;
+  std::vector<OctaveSetup> Octaves;
+  /// 1 / √Σ amplitude².
+  float OctaveScale;
+  /// Half-width of the window in cells; infinite without one.
+  float WindowReach;
+  /// Largest q (and largest |t| of the fade) at which a surflet is not 0.
+  float Support;
+  /// Only what the fast loops know: gradients on the square lattice, still, quintic and separable.
+  bool Variant;
+  /// Nothing but the 2^N corners of the cell and no sums: Rice's Quality 0.
+  bool SingleCell;
+  /// Second axis in use (tensors and surfaces in 3D).
+  bool Biaxial;
+  bool Curved;
+  /// How far jitter moves a corner down and up an axis.
+  float JitterDown;
+  float JitterUp;
+  /// Radius of a ball that holds every jittered corner; 0: none moves.
+  float JitterRadius;
+  double LatticeSteps[3][3];
+  double LatticeIndices[3][3];
+};
+
+/// Structure of arrays of one block. Axes and eigenvalues, then what the octaves add up to.
+struct MetricBlock
+{
+  alignas(64) float U[3][BlockRoom];
+  alignas(64) float M[3][BlockRoom];
+  alignas(64) float Along[BlockRoom];
+  alignas(64) float Across[BlockRoom];
+  alignas(64) float Second[BlockRoom];
+  /// Curvature of the streamline in 1 / world units.
+  alignas(64) float Bend[3][BlockRoom];
+  /// Length of the vector (Frobenius norm of the tensor).
+  alignas(64) float Length[BlockRoom];
+  /// 1 with a direction, 0 without.
+  alignas(64) float Sense[BlockRoom];
+  alignas(64) float Noise[BlockRoom];
+  /// Places of the samples in the lattice: cells and fractions.
+  alignas(64) std::uint32_t Cell[3][BlockRoom];
+  alignas(64) float Fraction[3][BlockRoom];
+  /// Room for tuples that the host converts, and for the unit vectors of neighbouring rows.
+  alignas(64) float Tuples[6 * BlockRoom];
+  alignas(64) double Positions[3 * BlockRoom];
+  alignas(64) float Neighbor[2][3][BlockRoom];
+};
+
+/// Symmetric tensor from 6 components, XX YY ZZ XY YZ XZ.
+template <int N>
+Matrix<N> TensorOf(const float* tuple)
+{
+  Matrix<N> tensor;
+  if constexpr (N == 2)
+  {
+    tensor << tuple[0], tuple[3], tuple[3], tuple[1];
+  }
+  else
+  {
+    tensor << tuple[0], tuple[3], tuple[5], tuple[3], tuple[1], tuple[4], tuple[5], tuple[4],
+      tuple[2];
+  }
+  return tensor;
+}
+} // namespace steerable
+
+#endif

@@ -73,6 +73,10 @@ AxialMetric<N> MetricFromVector(const NoiseParameters& parameters, const Vector<
 AxialMetric<3> MetricFromSurfaceVector(
   const NoiseParameters& parameters, const Vector<3>& vector, const Vector<3>& normal)
 {
+  if (normal.isZero(0.0))
+  {
+    return MetricFromVector<3>(parameters, vector);
+  }
   AxialMetric<3> metric;
   Vector<3> direction;
   Vector<3> unitNormal;

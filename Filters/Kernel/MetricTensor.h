@@ -65,7 +65,10 @@ double StrengthOf(const NoiseParameters& parameters, double magnitude);
 template <int N>
 AxialMetric<N> MetricFromVector(const NoiseParameters& parameters, const Vector<N>& vector);
 
-/// In-plane vector of a surface with this unit normal; the vector is projected on the tangent plane.
+/**
+ * Vector on a surface with this normal, projected on the tangent plane. The normal may have any
+ * length; 0: not on a surface, the metric is that of the vector in space.
+ */
 AxialMetric<3> MetricFromSurfaceVector(
   const NoiseParameters& parameters, const Vector<3>& vector, const Vector<3>& normal);
 
@@ -75,6 +78,23 @@ AxialMetric<3> MetricFromSurfaceVector(
  */
 template <int N>
 AxialMetric<N> MetricFromTensor(const NoiseParameters& parameters, const Matrix<N>& tensor);
+
+/// Symmetric tensor from 6 components, XX YY ZZ XY YZ XZ.
+template <int N>
+Matrix<N> TensorOf(const float* tuple)
+{
+  Matrix<N> tensor;
+  if constexpr (N == 2)
+  {
+    tensor << tuple[0], tuple[3], tuple[3], tuple[1];
+  }
+  else
+  {
+    tensor << tuple[0], tuple[3], tuple[5], tuple[3], tuple[1], tuple[4], tuple[5], tuple[4],
+      tuple[2];
+  }
+  return tensor;
+}
 
 /**
  * Bends the metric along the streamline's parabola: curvature d in 1/cells, |d| clamped to 1, the

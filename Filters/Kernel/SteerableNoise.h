@@ -116,13 +116,6 @@ public:
   EvaluationCounts EvaluatePoints(const TupleReader<double>& positions, const Field& field,
     std::size_t begin, std::size_t end, float* noise) const;
 
-  /**
-   * The metric of samples [begin, end) as 6 components (XX YY ZZ XY YZ XZ), without curvature; 2D
-   * leaves those with a Z at 0.
-   */
-  void EvaluateMetrics(
-    const Field& field, std::size_t begin, std::size_t end, float* metrics) const;
-
 private:
   NoiseParameters Parameters;
   int Dimension;

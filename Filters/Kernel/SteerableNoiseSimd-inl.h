@@ -1177,48 +1177,59 @@ HWY_NOINLINE void UnitVectors(
   }
 }
 
+/**
+ * Projects the unit vectors of a block on the tangent planes of its normals; a sample without a normal
+ * is not on a surface and keeps its vector.
+ */
+HWY_NOINLINE void ProjectOnSurface(MetricBlock& block, std::size_t count)
+{
+  for (std::size_t i = 0; i < count; i += Lanes)
+  {
+    V u[3];
+    V m[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      u[axis] = Load(block.U[axis] + i);
+      m[axis] = Load(block.M[axis] + i);
+    }
+    const V out = Dot(u, m);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      u[axis] = hn::NegMulAdd(out, m[axis], u[axis]);
+    }
+    const V length2 = Dot(u, u);
+    // A vector along the normal has no direction on the surface: what is left of it is rounding.
+    const V scale = hn::IfThenElseZero(
+      hn::Gt(length2, Const(1e-10f)), hn::Div(Const(1.0f), hn::Sqrt(length2)));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hn::StoreU(hn::Mul(u[axis], scale), DF(), block.U[axis] + i);
+    }
+  }
+}
+
 /// Eigenvalues of the metrics of the unit vectors in a block, and what stands for missing ones.
 template <int N>
 HWY_NOINLINE void MetricsOfDirections(
-  const NoiseSetup& setup, MetricBlock& block, std::size_t count, bool surface)
+  const NoiseSetup& setup, MetricBlock& block, std::size_t count)
 {
   const NoiseParameters& p = setup.Parameters;
-  const EigenvalueRange range = surface ? SurfaceEigenvalues(p) : VectorEigenvalues(p, N);
+  const EigenvalueRange range = VectorEigenvalues(p, N);
+  const V zero = Const(0.0f);
   const V one = Const(1.0f);
   const V along = Const(static_cast<float>(range.Along) - 1.0f);
   const V across = Const(static_cast<float>(range.Across) - 1.0f);
-  const V second = Const(static_cast<float>(SurfaceNormalEigenvalue) - 1.0f);
-  const V zero = Const(0.0f);
+  const V surfaceAcross = Const(static_cast<float>(SurfaceEigenvalues(p).Across) - 1.0f);
+  const V normal = Const(static_cast<float>(SurfaceNormalEigenvalue) - 1.0f);
   for (std::size_t i = 0; i < count; i += Lanes)
   {
-    V u[3] = { Load(block.U[0] + i), Load(block.U[1] + i), zero };
+    const V u0 = Load(block.U[0] + i);
+    V some = hn::Or(u0, Load(block.U[1] + i));
     if constexpr (N == 3)
     {
-      u[2] = Load(block.U[2] + i);
+      some = hn::Or(some, Load(block.U[2] + i));
     }
-    V some = hn::Or(hn::Or(u[0], u[1]), u[2]);
-    if (surface)
-    {
-      V m[3];
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        m[axis] = Load(block.M[axis] + i);
-      }
-      const V out = Dot(u, m);
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        u[axis] = hn::NegMulAdd(out, m[axis], u[axis]);
-      }
-      const V length2 = Dot(u, u);
-      const auto inPlane = hn::And(hn::Gt(length2, Const(1e-10f)), hn::Gt(Dot(m, m), Const(0.5f)));
-      const V scale = hn::IfThenElseZero(inPlane, hn::Div(one, hn::Sqrt(length2)));
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        u[axis] = hn::Mul(u[axis], scale);
-      }
-      some = hn::Or(hn::Or(u[0], u[1]), u[2]);
-    }
-    const auto there = hn::Ne(hn::And(some, hn::BitCast(DF(), hn::Set(DU(), 0x7FFFFFFFu))), zero);
+    const auto there = hn::Ne(hn::Abs(some), zero);
     V strength = Const(static_cast<float>(p.Strength));
     if (p.StrengthBy == StrengthMode::Magnitude)
     {
@@ -1227,19 +1238,22 @@ HWY_NOINLINE void MetricsOfDirections(
       strength = hn::Mul(strength, hn::Min(share, one));
     }
     strength = hn::IfThenElseZero(there, strength);
-    hn::StoreU(hn::IfThenElse(there, u[0], one), DF(), block.U[0] + i);
-    hn::StoreU(u[1], DF(), block.U[1] + i);
-    if constexpr (N == 3)
-    {
-      hn::StoreU(u[2], DF(), block.U[2] + i);
-    }
+    hn::StoreU(hn::IfThenElse(there, u0, one), DF(), block.U[0] + i);
     hn::StoreU(hn::MulAdd(strength, along, one), DF(), block.Along + i);
-    hn::StoreU(hn::MulAdd(strength, across, one), DF(), block.Across + i);
-    if (surface)
-    {
-      hn::StoreU(hn::MulAdd(strength, second, one), DF(), block.Second + i);
-    }
     hn::StoreU(hn::IfThenElseZero(there, one), DF(), block.Sense + i);
+    if (!setup.Biaxial)
+    {
+      hn::StoreU(hn::MulAdd(strength, across, one), DF(), block.Across + i);
+      continue;
+    }
+    const V m2 = hn::MulAdd(Load(block.M[0] + i), Load(block.M[0] + i),
+      hn::MulAdd(Load(block.M[1] + i), Load(block.M[1] + i),
+        hn::Mul(Load(block.M[2] + i), Load(block.M[2] + i))));
+    const auto onSurface = hn::Gt(m2, Const(0.5f));
+    hn::StoreU(hn::MulAdd(strength, hn::IfThenElse(onSurface, surfaceAcross, across), one), DF(),
+      block.Across + i);
+    hn::StoreU(hn::MulAdd(strength, hn::IfThenElse(onSurface, normal, across), one), DF(),
+      block.Second + i);
   }
 }
 
@@ -1379,8 +1393,9 @@ void Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
   {
     UnitVectors<3>(field.Normals->Read(first, count, block.Tuples), count,
       { block.M[0], block.M[1], block.M[2] }, block.Noise);
+    ProjectOnSurface(block, count);
   }
-  MetricsOfDirections<N>(setup, block, count, field.Normals != nullptr);
+  MetricsOfDirections<N>(setup, block, count);
 }
 
 /// Scales, masks, counts and hands out the noise of a block.

@@ -81,23 +81,6 @@ struct MetricBlock
   alignas(64) double Positions[3 * BlockRoom];
   alignas(64) float Neighbor[2][3][BlockRoom];
 };
-
-/// Symmetric tensor from 6 components, XX YY ZZ XY YZ XZ.
-template <int N>
-Matrix<N> TensorOf(const float* tuple)
-{
-  Matrix<N> tensor;
-  if constexpr (N == 2)
-  {
-    tensor << tuple[0], tuple[3], tuple[3], tuple[1];
-  }
-  else
-  {
-    tensor << tuple[0], tuple[3], tuple[5], tuple[3], tuple[1], tuple[4], tuple[5], tuple[4],
-      tuple[2];
-  }
-  return tensor;
-}
 } // namespace steerable
 
 #endif

@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NoiseArrays.h"
+
+#include "vtkArrayDispatch.h"
+#include "vtkDataArray.h"
+#include "vtkDataArrayRange.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace noise
+{
+namespace
+{
+/// Tuples of any array as doubles, one after the other.
+struct CopyTuples
+{
+  template <typename ArrayT, typename Visit>
+  void operator()(ArrayT* array, std::size_t first, std::size_t count, Visit&& visit) const
+  {
+    const auto begin = static_cast<vtkIdType>(first);
+    const auto range =
+      vtk::DataArrayTupleRange(array, begin, begin + static_cast<vtkIdType>(count));
+    const int components = array->GetNumberOfComponents();
+    double tuple[9];
+    std::size_t i = 0;
+    for (const auto values : range)
+    {
+      for (int c = 0; c < components; ++c)
+      {
+        tuple[c] = static_cast<double>(values[c]);
+      }
+      visit(i++, tuple);
+    }
+  }
+};
+
+template <typename Visit>
+void ForEachTuple(vtkDataArray* array, std::size_t first, std::size_t count, Visit&& visit)
+{
+  using Dispatcher = vtkArrayDispatch::DispatchByValueType<vtkArrayDispatch::Reals>;
+  const CopyTuples worker;
+  if (!Dispatcher::Execute(array, worker, first, count, visit))
+  {
+    worker(array, first, count, visit);
+  }
+}
+
+/// Floats square to at most 1e38: what is longer or shorter keeps its direction.
+constexpr double Longest = 1e18;
+
+void ToFloats(const double* values, int count, float* out)
+{
+  double largest = 0.0;
+  for (int c = 0; c < count; ++c)
+  {
+    largest = std::max(largest, std::abs(values[c]));
+  }
+  double scale = 1.0;
+  if (std::isfinite(largest) && largest > Longest)
+  {
+    scale = Longest / largest;
+  }
+  else if (largest > 0.0 && largest < 1.0 / Longest)
+  {
+    scale = 1.0 / (Longest * largest);
+  }
+  for (int c = 0; c < count; ++c)
+  {
+    // Beyond the range of a float only what is not finite is left.
+    const double value = values[c] * scale;
+    out[c] =
+      std::isfinite(value) ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
+class VectorReader : public steerable::TupleReader<float>
+{
+public:
+  VectorReader(vtkDataArray* array, const Axes& axes, bool inPlane)
+    : Array(array)
+    , InAxes(axes)
+    , Rotated(axes != WorldAxes && !(inPlane && array->GetNumberOfComponents() == 2))
+  {
+  }
+
+  const float* Read(std::size_t first, std::size_t count, float* scratch) const override
+  {
+    const int components = this->Array->GetNumberOfComponents();
+    ForEachTuple(this->Array, first, count,
+      [&](std::size_t i, const double* tuple)
+      {
+        double vector[3] = { tuple[0], tuple[1], components > 2 ? tuple[2] : 0.0 };
+        if (this->Rotated)
+        {
+          const double world[3] = { vector[0], vector[1], vector[2] };
+          for (int row = 0; row < 3; ++row)
+          {
+            vector[row] = 0.0;
+            for (int c = 0; c < 3; ++c)
+            {
+              // Not 0 times NaN: what the axis does not see does not matter.
+              vector[row] += this->InAxes[row][c] != 0.0 ? this->InAxes[row][c] * world[c] : 0.0;
+            }
+          }
+        }
+        ToFloats(vector, 3, scratch + 3 * i);
+      });
+    return scratch;
+  }
+
+private:
+  vtkDataArray* Array;
+  Axes InAxes;
+  bool Rotated;
+};
+
+class TensorReader : public steerable::TupleReader<float>
+{
+public:
+  TensorReader(vtkDataArray* array, const Axes& axes, bool inPlane)
+    : Array(array)
+    , InAxes(axes)
+    , Rotated(axes != WorldAxes && !(inPlane && array->GetNumberOfComponents() == 4))
+  {
+  }
+
+  const float* Read(std::size_t first, std::size_t count, float* scratch) const override
+  {
+    const int components = this->Array->GetNumberOfComponents();
+    ForEachTuple(this->Array, first, count,
+      [&](std::size_t i, const double* t)
+      {
+        double full[3][3] = {};
+        if (components == 4)
+        {
+          full[0][0] = t[0];
+          full[0][1] = full[1][0] = 0.5 * (t[1] + t[2]);
+          full[1][1] = t[3];
+        }
+        else if (components == 6)
+        {
+          full[0][0] = t[0];
+          full[1][1] = t[1];
+          full[2][2] = t[2];
+          full[0][1] = full[1][0] = t[3];
+          full[1][2] = full[2][1] = t[4];
+          full[0][2] = full[2][0] = t[5];
+        }
+        else
+        {
+          for (int row = 0; row < 3; ++row)
+          {
+            for (int c = 0; c < 3; ++c)
+            {
+              full[row][c] = 0.5 * (t[3 * row + c] + t[3 * c + row]);
+            }
+          }
+        }
+        const auto get = [&](int row, int column)
+        {
+          if (!this->Rotated)
+          {
+            return full[row][column];
+          }
+          double sum = 0.0;
+          for (int a = 0; a < 3; ++a)
+          {
+            for (int b = 0; b < 3; ++b)
+            {
+              const double factor = this->InAxes[row][a] * this->InAxes[column][b];
+              sum += factor != 0.0 ? factor * full[a][b] : 0.0;
+            }
+          }
+          return sum;
+        };
+        const double symmetric[6] = { get(0, 0), get(1, 1), get(2, 2), get(0, 1), get(1, 2),
+          get(0, 2) };
+        ToFloats(symmetric, 6, scratch + 6 * i);
+      });
+    return scratch;
+  }
+
+private:
+  vtkDataArray* Array;
+  Axes InAxes;
+  bool Rotated;
+};
+
+class PositionReader : public steerable::TupleReader<double>
+{
+public:
+  explicit PositionReader(vtkDataArray* array)
+    : Array(array)
+  {
+  }
+  const double* Read(std::size_t first, std::size_t count, double* scratch) const override
+  {
+    ForEachTuple(this->Array, first, count,
+      [&](std::size_t i, const double* tuple) { std::copy(tuple, tuple + 3, scratch + 3 * i); });
+    return scratch;
+  }
+
+private:
+  vtkDataArray* Array;
+};
+
+class DataSetPositionReader : public steerable::TupleReader<double>
+{
+public:
+  explicit DataSetPositionReader(vtkDataSet* dataset)
+    : DataSet(dataset)
+  {
+  }
+  const double* Read(std::size_t first, std::size_t count, double* scratch) const override
+  {
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      this->DataSet->GetPoint(static_cast<vtkIdType>(first + i), scratch + 3 * i);
+    }
+    return scratch;
+  }
+
+private:
+  vtkDataSet* DataSet;
+};
+} // namespace
+
+std::unique_ptr<steerable::TupleReader<float>> MakeVectorReader(
+  vtkDataArray* array, const Axes& axes, bool inPlane)
+{
+  auto* floats = vtkFloatArray::FastDownCast(array);
+  if (floats && floats->GetNumberOfComponents() == 3 && axes == WorldAxes)
+  {
+    return std::make_unique<steerable::ContiguousReader<float, 3>>(floats->GetPointer(0));
+  }
+  return std::make_unique<VectorReader>(array, axes, inPlane);
+}
+
+std::unique_ptr<steerable::TupleReader<float>> MakeTensorReader(
+  vtkDataArray* array, const Axes& axes, bool inPlane)
+{
+  return std::make_unique<TensorReader>(array, axes, inPlane);
+}
+
+std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray* array)
+{
+  if (auto* doubles = vtkDoubleArray::FastDownCast(array))
+  {
+    return std::make_unique<steerable::ContiguousReader<double, 3>>(doubles->GetPointer(0));
+  }
+  return std::make_unique<PositionReader>(array);
+}
+
+std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataSet* dataset)
+{
+  return std::make_unique<DataSetPositionReader>(dataset);
+}
+
+vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)
+{
+  if (vtkDataArray* vectors = attributes->GetVectors())
+  {
+    return vectors;
+  }
+  if (vtkDataArray* tensors = attributes->GetTensors())
+  {
+    return tensors;
+  }
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = attributes->GetArray(i);
+    const bool isReal =
+      array && (array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE);
+    if (isReal && array->GetNumberOfComponents() == 3 && array != attributes->GetNormals() &&
+      array != attributes->GetTCoords() &&
+      (!array->GetName() || std::strcmp(array->GetName(), "Normals") != 0))
+    {
+      return array;
+    }
+  }
+  return nullptr;
+}
+} // namespace noise

@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NoiseImages.h"
+
+#include "vtkArrayListTemplate.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkMatrix3x3.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkSMPTools.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStructuredGrid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace noise
+{
+namespace
+{
+using SDDP = vtkStreamingDemandDrivenPipeline;
+
+/// Where a fine sample lies between two coarse ones along one axis.
+struct Between
+{
+  vtkIdType Low;
+  vtkIdType High;
+  double Share;
+};
+
+Between Locate(double place, int count)
+{
+  const double inside = std::min(std::max(place, 0.0), count - 1.0);
+  const auto low = static_cast<vtkIdType>(std::floor(inside));
+  return { low, std::min<vtkIdType>(low + 1, count - 1), inside - low };
+}
+
+/// Interpolates all arrays of `list` from a coarse lattice to a fine one.
+template <typename Place>
+void Interpolate(ArrayList& list, const int coarse[3], const int fine[3], Place&& place)
+{
+  vtkSMPTools::For(0, static_cast<vtkIdType>(fine[1]) * fine[2],
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      vtkIdType ids[8];
+      double weights[8];
+      for (vtkIdType row = begin; row < end; ++row)
+      {
+        const int jk[2] = { static_cast<int>(row % fine[1]), static_cast<int>(row / fine[1]) };
+        const Between y = Locate(place(1, jk[0]), coarse[1]);
+        const Between z = Locate(place(2, jk[1]), coarse[2]);
+        for (int i = 0; i < fine[0]; ++i)
+        {
+          const Between x = Locate(place(0, i), coarse[0]);
+          for (int corner = 0; corner < 8; ++corner)
+          {
+            const vtkIdType cx = corner & 1 ? x.High : x.Low;
+            const vtkIdType cy = corner & 2 ? y.High : y.Low;
+            const vtkIdType cz = corner & 4 ? z.High : z.Low;
+            ids[corner] = (cz * coarse[1] + cy) * coarse[0] + cx;
+            weights[corner] = (corner & 1 ? x.Share : 1.0 - x.Share) *
+              (corner & 2 ? y.Share : 1.0 - y.Share) * (corner & 4 ? z.Share : 1.0 - z.Share);
+          }
+          list.Interpolate(8, ids, weights, row * fine[0] + i);
+        }
+      }
+    });
+}
+} // namespace
+
+void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int factor)
+{
+  int whole[6];
+  double spacing[3] = { 1.0, 1.0, 1.0 };
+  inInfo->Get(SDDP::WHOLE_EXTENT(), whole);
+  if (inInfo->Has(vtkDataObject::SPACING()))
+  {
+    inInfo->Get(vtkDataObject::SPACING(), spacing);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // A flat axis stays flat; the others keep their first and last sample.
+    const bool flat = whole[2 * axis] == whole[2 * axis + 1];
+    whole[2 * axis] *= factor;
+    whole[2 * axis + 1] *= factor;
+    spacing[axis] /= factor;
+    if (flat)
+    {
+      whole[2 * axis + 1] = whole[2 * axis];
+    }
+  }
+  outInfo->Set(SDDP::WHOLE_EXTENT(), whole, 6);
+  outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
+}
+
+void Magnify(
+  vtkImageData* input, vtkInformation*, vtkImageData* output, vtkInformation* outInfo, int factor)
+{
+  int coarseExtent[6];
+  input->GetExtent(coarseExtent);
+  int extent[6];
+  outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
+  double spacing[3];
+  int fineDims[3];
+  int coarseDims[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    // What the input covers, even if a source gave less than it was asked for.
+    extent[2 * axis] = std::max(extent[2 * axis], coarseExtent[2 * axis] * factor);
+    extent[2 * axis + 1] = std::min(extent[2 * axis + 1], coarseExtent[2 * axis + 1] * factor);
+    spacing[axis] = input->GetSpacing()[axis] / factor;
+    fineDims[axis] = std::max(extent[2 * axis + 1] - extent[2 * axis] + 1, 0);
+    coarseDims[axis] = coarseExtent[2 * axis + 1] - coarseExtent[2 * axis] + 1;
+  }
+  output->SetExtent(extent);
+  output->SetSpacing(spacing);
+  output->SetOrigin(input->GetOrigin());
+  output->SetDirectionMatrix(input->GetDirectionMatrix());
+  output->GetFieldData()->PassData(input->GetFieldData());
+  if (input->GetNumberOfPoints() == 0 || output->GetNumberOfPoints() == 0)
+  {
+    return;
+  }
+
+  const auto coarsePlace = [&](int axis, int index)
+  { return double(extent[2 * axis] + index) / factor - coarseExtent[2 * axis]; };
+  {
+    vtkPointData* out = output->GetPointData();
+    out->InterpolateAllocate(input->GetPointData(), output->GetNumberOfPoints());
+    out->SetNumberOfTuples(output->GetNumberOfPoints());
+    ArrayList list;
+    list.AddArrays(output->GetNumberOfPoints(), input->GetPointData(), out, 0.0, false);
+    Interpolate(list, coarseDims, fineDims, coarsePlace);
+  }
+  vtkCellData* out = output->GetCellData();
+  if (input->GetNumberOfCells() == 0 || output->GetNumberOfCells() == 0)
+  {
+    return;
+  }
+  int fineCells[3];
+  int coarseCells[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    fineCells[axis] = std::max(fineDims[axis] - 1, 1);
+    coarseCells[axis] = std::max(coarseDims[axis] - 1, 1);
+  }
+  const auto cellPlace = [&](int axis, int index)
+  {
+    return coarseDims[axis] > 1
+      ? (extent[2 * axis] + index + 0.5) / factor - coarseExtent[2 * axis] - 0.5
+      : 0.0;
+  };
+  // Labels and scalars of a cell are repeated: interpolated ones would be something else.
+  vtkNew<vtkCellData> smooth;
+  vtkNew<vtkCellData> repeated;
+  smooth->CopyAllOn();
+  for (int i = 0; i < input->GetCellData()->GetNumberOfArrays(); ++i)
+  {
+    vtkDataArray* array = input->GetCellData()->GetArray(i);
+    if (!array)
+    {
+      continue;
+    }
+    const int components = array->GetNumberOfComponents();
+    const bool steers = (array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE) &&
+      components >= 2 && components <= 9;
+    (steers ? smooth : repeated)->AddArray(array);
+  }
+  const vtkIdType count = output->GetNumberOfCells();
+  const auto fill = [&](vtkCellData* from, auto&& place)
+  {
+    vtkNew<vtkCellData> to;
+    to->InterpolateAllocate(from, count);
+    to->SetNumberOfTuples(count);
+    ArrayList list;
+    list.AddArrays(count, from, to, 0.0, false);
+    Interpolate(list, coarseCells, fineCells, place);
+    for (int i = 0; i < to->GetNumberOfArrays(); ++i)
+    {
+      out->AddArray(to->GetArray(i));
+    }
+  };
+  fill(smooth, cellPlace);
+  fill(repeated, [&](int axis, int index) { return std::round(cellPlace(axis, index)); });
+  for (int attribute = 0; attribute < vtkDataSetAttributes::NUM_ATTRIBUTES; ++attribute)
+  {
+    if (vtkAbstractArray* active = input->GetCellData()->GetAbstractAttribute(attribute))
+    {
+      out->SetActiveAttribute(active->GetName(), attribute);
+    }
+  }
+}
+
+void CropToUpdateExtent(vtkDataSet* output, vtkInformation* outInfo)
+{
+  if (!outInfo->Has(SDDP::UPDATE_EXTENT()) || !outInfo->Get(SDDP::UPDATE_EXTENT_INITIALIZED()))
+  {
+    return;
+  }
+  int extent[6];
+  outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
+  if (auto* image = vtkImageData::SafeDownCast(output))
+  {
+    image->Crop(extent);
+  }
+  else if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(output))
+  {
+    rectilinear->Crop(extent);
+  }
+  else if (auto* structured = vtkStructuredGrid::SafeDownCast(output))
+  {
+    structured->Crop(extent);
+  }
+}
+} // namespace noise

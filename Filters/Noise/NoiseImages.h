@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Images finer than their input, and pieces no larger than what was asked for (private).
+ */
+#ifndef NoiseImages_h
+#define NoiseImages_h
+
+class vtkDataSet;
+class vtkImageData;
+class vtkInformation;
+
+namespace noise
+{
+/// Whole extent and spacing of an image with `factor` samples for each of the input's.
+void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int factor);
+
+/**
+ * Fills `output` with that image over the update extent: point arrays interpolated linearly, cell
+ * arrays repeated, except that floating-point cell arrays of 2 to 9 components (which may steer the
+ * noise) are interpolated between cell centres.
+ */
+void Magnify(vtkImageData* input, vtkInformation* inInfo, vtkImageData* output,
+  vtkInformation* outInfo, int factor);
+
+/// Drops the border that curvature asked for, where an extent was requested.
+void CropToUpdateExtent(vtkDataSet* output, vtkInformation* outInfo);
+} // namespace noise
+
+#endif

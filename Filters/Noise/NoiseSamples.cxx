@@ -1,0 +1,528 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NoiseSamples.h"
+
+#include "MetricTensor.h"
+
+#include "vtkCell.h"
+#include "vtkCellCenters.h"
+#include "vtkCellData.h"
+#include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkGenericCell.h"
+#include "vtkGradientFilter.h"
+#include "vtkIdList.h"
+#include "vtkImageData.h"
+#include "vtkMath.h"
+#include "vtkMatrix3x3.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
+#include "vtkPolygon.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkSMPTools.h"
+#include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace noise
+{
+namespace
+{
+bool IsGhostCell(vtkUnsignedCharArray* ghosts, vtkIdType cell)
+{
+  return ghosts &&
+    (ghosts->GetValue(cell) &
+      (vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL));
+}
+
+/// Points along each axis of a structured dataset; false for the others.
+bool GetDimensions(vtkDataSet* dataset, int dims[3])
+{
+  if (auto* image = vtkImageData::SafeDownCast(dataset))
+  {
+    image->GetDimensions(dims);
+    return true;
+  }
+  if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(dataset))
+  {
+    rectilinear->GetDimensions(dims);
+    return true;
+  }
+  if (auto* structured = vtkStructuredGrid::SafeDownCast(dataset))
+  {
+    structured->GetDimensions(dims);
+    return true;
+  }
+  return false;
+}
+
+/// The axis along which a structured dataset is one cell thick, -1 if none or several.
+int GetSlabAxis(vtkDataSet* dataset)
+{
+  int dims[3];
+  if (!GetDimensions(dataset, dims))
+  {
+    return -1;
+  }
+  int slab = -1;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (dims[axis] < 2)
+    {
+      return -1; // flat: its cells are surfaces anyway
+    }
+    if (dims[axis] == 2)
+    {
+      if (slab >= 0)
+      {
+        return -1;
+      }
+      slab = axis;
+    }
+  }
+  return slab;
+}
+} // namespace
+
+Samples::Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent)
+  : DataSet(dataset)
+  , Array(array)
+  , Cells(cells)
+{
+  if (auto* image = vtkImageData::SafeDownCast(dataset))
+  {
+    this->SetGrid(image, wholeExtent);
+  }
+  else
+  {
+    this->SetPoints();
+  }
+  const bool flat = this->Dimension == 2;
+  if (IsVector(array->GetNumberOfComponents()))
+  {
+    this->Steering = MakeVectorReader(array, this->InAxes, flat);
+    this->Field.Vectors = this->Steering.get();
+  }
+  else
+  {
+    this->Steering = MakeTensorReader(array, this->InAxes, flat);
+    this->Field.Tensors = this->Steering.get();
+  }
+}
+
+Samples::~Samples() = default;
+
+vtkIdType Samples::GetNumberOfSamples() const
+{
+  return this->Cells ? this->DataSet->GetNumberOfCells() : this->DataSet->GetNumberOfPoints();
+}
+
+std::size_t Samples::GetNumberOfParts() const
+{
+  return this->IsGrid ? this->Grid.GetNumberOfRows()
+                      : static_cast<std::size_t>(this->GetNumberOfSamples());
+}
+
+void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
+{
+  int extent[6];
+  image->GetExtent(extent);
+  const double* spacing = image->GetSpacing();
+  const double* origin = image->GetOrigin();
+  const double* direction = image->GetDirectionMatrix()->GetData();
+
+  // The axes of the image, those with extent first; the others keep their cyclic order.
+  int order[3] = { 0, 1, 2 };
+  const int* whole = wholeExtent ? wholeExtent : extent;
+  int thick[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int cells = whole[2 * axis + 1] - whole[2 * axis];
+    thick[axis] = this->Cells ? cells > 1 : cells > 0;
+  }
+  if (!thick[0] && !thick[1] && thick[2])
+  {
+    order[0] = 2;
+    order[1] = 0;
+    order[2] = 1;
+  }
+  else
+  {
+    std::stable_partition(order, order + 3, [&](int axis) { return thick[axis] != 0; });
+  }
+  this->Dimension = thick[0] && thick[1] && thick[2] ? 3 : 2;
+
+  const double half = this->Cells ? 0.5 : 0.0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const int axis = order[i];
+    const int points = extent[2 * axis + 1] - extent[2 * axis] + 1;
+    for (int world = 0; world < 3; ++world)
+    {
+      this->InAxes[i][world] = direction[3 * world + axis];
+    }
+    // Along its own axes an image is a grid wherever it was turned to.
+    double start = 0.0;
+    for (int world = 0; world < 3; ++world)
+    {
+      start += this->InAxes[i][world] * origin[world];
+    }
+    this->Grid.Origin[i] = start + half * spacing[axis];
+    this->Grid.Spacing[i] = spacing[axis];
+    this->Grid.FirstIndex[i] = extent[2 * axis];
+    this->Grid.Dimensions[i] = this->Cells ? std::max(points - 1, 1) : points;
+  }
+  this->IsGrid = true;
+}
+
+void Samples::SetPoints()
+{
+  if (this->Cells)
+  {
+    vtkNew<vtkDoubleArray> centers;
+    centers->SetNumberOfComponents(3);
+    centers->SetNumberOfTuples(this->DataSet->GetNumberOfCells());
+    vtkCellCenters::ComputeCellCenters(this->DataSet, centers);
+    this->CellCenters = centers;
+    this->Positions = MakePositionReader(centers);
+  }
+  else if (auto* pointSet = vtkPointSet::SafeDownCast(this->DataSet))
+  {
+    this->Positions = MakePositionReader(pointSet->GetPoints()->GetData());
+  }
+  else
+  {
+    this->Positions = MakePositionReader(this->DataSet);
+  }
+  if (IsVector(this->Array->GetNumberOfComponents()))
+  {
+    this->Normals =
+      GetSlabAxis(this->DataSet) >= 0 ? this->ComputeSlabNormals() : this->ComputeNormals();
+  }
+  if (this->Normals)
+  {
+    this->NormalReader = MakeVectorReader(this->Normals, WorldAxes, false);
+    this->Field.Normals = this->NormalReader.get();
+  }
+}
+
+vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
+{
+  const vtkIdType cells = this->DataSet->GetNumberOfCells();
+  auto normals = vtkSmartPointer<vtkFloatArray>::New();
+  normals->SetNumberOfComponents(3);
+  normals->SetNumberOfTuples(this->GetNumberOfSamples());
+  normals->Fill(0.0);
+
+  // The dataset's own normals where it has them; their sense does not matter.
+  vtkDataSetAttributes* attributes = this->Cells
+    ? static_cast<vtkDataSetAttributes*>(this->DataSet->GetCellData())
+    : this->DataSet->GetPointData();
+  vtkDataArray* own = attributes->GetNormals();
+  std::vector<unsigned char> inVolume(this->Cells ? 0 : this->DataSet->GetNumberOfPoints(), 0);
+  vtkNew<vtkGenericCell> cell;
+  bool any = false;
+  for (vtkIdType id = 0; id < cells; ++id)
+  {
+    this->DataSet->GetCell(id, cell);
+    if (cell->GetCellDimension() == 3 && !this->Cells)
+    {
+      for (vtkIdType i = 0; i < cell->GetNumberOfPoints(); ++i)
+      {
+        inVolume[cell->GetPointId(static_cast<int>(i))] = 1;
+      }
+    }
+    if (cell->GetCellDimension() != 2)
+    {
+      continue;
+    }
+    double normal[3];
+    vtkPoints* points = cell->GetPoints();
+    if (cell->GetCellType() == VTK_TRIANGLE_STRIP)
+    {
+      vtkNew<vtkPoints> first;
+      first->SetDataTypeToDouble();
+      for (int i = 0; i < 3; ++i)
+      {
+        first->InsertNextPoint(points->GetPoint(i));
+      }
+      vtkPolygon::ComputeNormal(first, normal);
+    }
+    else
+    {
+      vtkPolygon::ComputeNormal(points, normal);
+    }
+    if (vtkMath::Norm(normal) < 0.5)
+    {
+      continue; // degenerate cell
+    }
+    any = true;
+    if (this->Cells)
+    {
+      normals->SetTuple(id, own ? own->GetTuple(id) : normal);
+      continue;
+    }
+    for (vtkIdType i = 0; i < cell->GetNumberOfPoints(); ++i)
+    {
+      const vtkIdType point = cell->GetPointId(static_cast<int>(i));
+      double sum[3];
+      normals->GetTuple(point, sum);
+      // Neighbours that face the other way count all the same: the metric has no sides.
+      const double side = vtkMath::Dot(sum, normal) < 0.0 ? -1.0 : 1.0;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        sum[axis] += side * normal[axis];
+      }
+      normals->SetTuple(point, own ? own->GetTuple(point) : sum);
+    }
+  }
+  for (std::size_t point = 0; point < inVolume.size(); ++point)
+  {
+    if (inVolume[point])
+    {
+      normals->SetTuple3(static_cast<vtkIdType>(point), 0.0, 0.0, 0.0);
+    }
+  }
+  return any ? normals : nullptr;
+}
+
+vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
+{
+  int dims[3];
+  GetDimensions(this->DataSet, dims);
+  const int slab = GetSlabAxis(this->DataSet);
+  const int u = (slab + 1) % 3;
+  const int v = (slab + 2) % 3;
+  const vtkIdType stride[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };
+  const vtkIdType pointCount = this->DataSet->GetNumberOfPoints();
+  auto normals = vtkSmartPointer<vtkFloatArray>::New();
+  normals->SetNumberOfComponents(3);
+  normals->SetNumberOfTuples(this->GetNumberOfSamples());
+
+  // Through the slab, from one point to its partner on the other side.
+  const auto through = [&](vtkIdType point, double normal[3])
+  {
+    const vtkIdType near = (point / stride[slab]) % 2 == 0 ? point : point - stride[slab];
+    double a[3];
+    double b[3];
+    this->DataSet->GetPoint(near, a);
+    this->DataSet->GetPoint(near + stride[slab], b);
+    vtkMath::Subtract(b, a, normal);
+  };
+  double normal[3];
+  if (!this->Cells)
+  {
+    for (vtkIdType point = 0; point < pointCount; ++point)
+    {
+      through(point, normal);
+      normals->SetTuple(point, normal);
+    }
+    return normals;
+  }
+  vtkIdType cell = 0;
+  for (int k = 0; k < dims[2] - 1; ++k)
+  {
+    for (int j = 0; j < dims[1] - 1; ++j)
+    {
+      for (int i = 0; i < dims[0] - 1; ++i, ++cell)
+      {
+        double sum[3] = { 0.0, 0.0, 0.0 };
+        const vtkIdType corner = i * stride[0] + j * stride[1] + k * stride[2];
+        for (const vtkIdType offset : { vtkIdType(0), stride[u], stride[v], stride[u] + stride[v] })
+        {
+          through(corner + offset, normal);
+          vtkMath::Add(sum, normal, sum);
+        }
+        normals->SetTuple(cell, sum);
+      }
+    }
+  }
+  return normals;
+}
+
+void Samples::ComputeCurvature()
+{
+  const vtkIdType count = this->GetNumberOfSamples();
+  if (this->IsGrid || count == 0 || !this->Field.Vectors)
+  {
+    return;
+  }
+  // û of every sample, 0 where there is none.
+  vtkNew<vtkFloatArray> unit;
+  unit->SetName("SteerableNoiseDirection");
+  unit->SetNumberOfComponents(3);
+  unit->SetNumberOfTuples(count);
+  float* units = unit->GetPointer(0);
+  vtkSMPTools::For(0, count, 4096,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      std::vector<float> scratch(3 * (end - begin));
+      const float* vectors = this->Steering->Read(begin, end - begin, scratch.data());
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        Eigen::Vector3d u =
+          Eigen::Map<const Eigen::Vector3f>(vectors + 3 * (i - begin)).cast<double>();
+        const double length = u.norm();
+        u = std::isfinite(length) && length > 0.0 ? Eigen::Vector3d(u / length)
+                                                  : Eigen::Vector3d::Zero();
+        Eigen::Map<Eigen::Vector3f>(units + 3 * i) = u.cast<float>();
+      }
+    });
+
+  auto geometry = vtkSmartPointer<vtkDataSet>::Take(this->DataSet->NewInstance());
+  geometry->CopyStructure(this->DataSet);
+  if (this->Cells)
+  {
+    geometry->GetCellData()->AddArray(unit);
+  }
+  else
+  {
+    geometry->GetPointData()->AddArray(unit);
+  }
+  vtkNew<vtkGradientFilter> gradient;
+  gradient->SetInputData(geometry);
+  gradient->SetInputScalars(
+    this->Cells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
+    unit->GetName());
+  gradient->SetResultArrayName("Jacobian");
+  gradient->Update();
+  vtkDataSet* output = vtkDataSet::SafeDownCast(gradient->GetOutput());
+  vtkDataArray* jacobian = this->Cells ? output->GetCellData()->GetArray("Jacobian")
+                                       : output->GetPointData()->GetArray("Jacobian");
+  if (!jacobian || jacobian->GetNumberOfComponents() != 9 || jacobian->GetNumberOfTuples() != count)
+  {
+    return;
+  }
+
+  // (û·∇)û, written over û, which nobody needs any more.
+  vtkSMPTools::For(0, count, 4096,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      double J[9];
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        jacobian->GetTuple(i, J);
+        Eigen::Map<Eigen::Vector3f> u(units + 3 * i);
+        const Eigen::Vector3d direction = u.cast<double>();
+        u = (Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(J) * direction)
+              .cast<float>();
+      }
+    });
+  this->Curvature = unit;
+  this->CurvatureReader = MakeVectorReader(this->Curvature, WorldAxes, false);
+  this->Field.Curvature = this->CurvatureReader.get();
+}
+
+steerable::EvaluationCounts Samples::Evaluate(
+  const steerable::SteerableNoise& kernel, std::size_t begin, std::size_t end, float* noise) const
+{
+  return this->IsGrid ? kernel.EvaluateImage(this->Grid, this->Field, begin, end, noise)
+                      : kernel.EvaluatePoints(*this->Positions, this->Field, begin, end, noise);
+}
+
+void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkIdType begin,
+  vtkIdType end, float* metrics) const
+{
+  using namespace steerable;
+  const auto count = static_cast<std::size_t>(end - begin);
+  std::vector<float> scratch(6 * count);
+  std::vector<float> normalScratch(3 * count);
+  const float* steering = this->Steering->Read(begin, count, scratch.data());
+  const float* normals =
+    this->NormalReader ? this->NormalReader->Read(begin, count, normalScratch.data()) : nullptr;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    Matrix<3> metric = Matrix<3>::Zero();
+    if (this->Field.Tensors)
+    {
+      const Matrix<3> tensor = TensorOf<3>(steering + 6 * i);
+      if (this->Dimension == 2)
+      {
+        metric.topLeftCorner<2, 2>() =
+          MetricFromTensor<2>(parameters, tensor.topLeftCorner<2, 2>()).ToMatrix();
+      }
+      else
+      {
+        metric = MetricFromTensor<3>(parameters, tensor).ToMatrix();
+      }
+    }
+    else
+    {
+      const Vector<3> vector = Eigen::Map<const Eigen::Vector3f>(steering + 3 * i).cast<double>();
+      if (this->Dimension == 2)
+      {
+        metric.topLeftCorner<2, 2>() = MetricFromVector<2>(parameters, vector.head<2>()).ToMatrix();
+      }
+      else if (normals)
+      {
+        const Vector<3> normal = Eigen::Map<const Eigen::Vector3f>(normals + 3 * i).cast<double>();
+        metric = MetricFromSurfaceVector(parameters, vector, normal).ToMatrix();
+      }
+      else
+      {
+        metric = MetricFromVector<3>(parameters, vector).ToMatrix();
+      }
+    }
+    // Back from the axes of the noise to the world's.
+    Matrix<3> axes;
+    for (int row = 0; row < 3; ++row)
+    {
+      for (int column = 0; column < 3; ++column)
+      {
+        axes(row, column) = this->InAxes[row][column];
+      }
+    }
+    metric = axes.transpose() * metric * axes;
+    const double components[6] = { metric(0, 0), metric(1, 1), metric(2, 2), metric(0, 1),
+      metric(1, 2), metric(0, 2) };
+    std::copy(components, components + 6, metrics + 6 * (begin + i));
+  }
+}
+
+void AddSampleSpacing(vtkDataSet* dataset, double& largest, double& sum, double& count)
+{
+  if (auto* image = vtkImageData::SafeDownCast(dataset))
+  {
+    int dims[3];
+    image->GetDimensions(dims);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (dims[axis] > 1)
+      {
+        largest = std::max(largest, std::abs(image->GetSpacing()[axis]));
+      }
+    }
+    return;
+  }
+  // A slab's own thickness says nothing about the distance of its samples.
+  const bool slab = GetSlabAxis(dataset) >= 0;
+  const vtkIdType cells = dataset->GetNumberOfCells();
+  const vtkIdType step = 1 + cells / 1000000;
+  vtkUnsignedCharArray* ghosts = dataset->GetCellGhostArray();
+  for (vtkIdType id = 0; id < cells; id += step)
+  {
+    if (IsGhostCell(ghosts, id))
+    {
+      continue;
+    }
+    double bounds[6];
+    dataset->GetCellBounds(id, bounds);
+    double extent[3] = { bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4] };
+    std::sort(extent, extent + 3);
+    const bool flat = slab || extent[0] <= 1e-6 * extent[2];
+    const double low = flat ? 0.0 : extent[0];
+    const double diagonal = std::sqrt(low * low + extent[1] * extent[1] + extent[2] * extent[2]);
+    if (std::isfinite(diagonal))
+    {
+      sum += diagonal / std::sqrt(flat ? 2.0 : 3.0);
+      count += 1.0;
+    }
+  }
+}
+} // namespace noise

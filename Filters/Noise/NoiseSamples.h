@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * One dataset as the kernel sees it (private to this module): where its samples are, what steers them
+ * and which metric they take. Images are grids in their own axes; everything else is points in any
+ * order, with normals where the cells are surfaces.
+ */
+#ifndef NoiseSamples_h
+#define NoiseSamples_h
+
+#include "NoiseArrays.h"
+
+#include "vtkSmartPointer.h"
+
+#include <memory>
+
+class vtkDataArray;
+class vtkDataSet;
+class vtkFloatArray;
+class vtkImageData;
+
+namespace noise
+{
+class Samples
+{
+public:
+  /**
+   * `cells`: the array belongs to the cells. `wholeExtent` tells whether an image is flat where the
+   * dataset is a piece of it; null: the dataset is all there is.
+   */
+  Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent);
+  ~Samples();
+
+  vtkIdType GetNumberOfSamples() const;
+  /// 2 for images with a flat axis, else 3.
+  int GetDimension() const { return this->Dimension; }
+  /// Parts that are evaluated independently: rows of a grid, or samples.
+  std::size_t GetNumberOfParts() const;
+
+  /// Curvature of the streamlines, where the kernel does not find it itself. Runs vtkGradientFilter.
+  void ComputeCurvature();
+
+  /// Noise of the parts [begin, end) into an array of GetNumberOfSamples() values.
+  steerable::EvaluationCounts Evaluate(const steerable::SteerableNoise& kernel, std::size_t begin,
+    std::size_t end, float* noise) const;
+
+  /// The metrics (6 components) of the samples [begin, end), in world axes.
+  void EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkIdType begin, vtkIdType end,
+    float* metrics) const;
+
+private:
+  void SetGrid(vtkImageData* image, const int* wholeExtent);
+  void SetPoints();
+  /// Unit normals of samples on cells of dimension 2, 0 for the others; null if all are.
+  vtkSmartPointer<vtkFloatArray> ComputeNormals() const;
+  vtkSmartPointer<vtkFloatArray> ComputeSlabNormals() const;
+
+  vtkDataSet* DataSet;
+  vtkDataArray* Array;
+  bool Cells;
+  int Dimension = 3;
+  bool IsGrid = false;
+  steerable::ImageGrid Grid;
+  Axes InAxes = WorldAxes;
+  steerable::Field Field;
+  std::unique_ptr<steerable::TupleReader<float>> Steering;
+  std::unique_ptr<steerable::TupleReader<float>> NormalReader;
+  std::unique_ptr<steerable::TupleReader<float>> CurvatureReader;
+  std::unique_ptr<steerable::TupleReader<double>> Positions;
+  vtkSmartPointer<vtkFloatArray> Normals;
+  vtkSmartPointer<vtkFloatArray> Curvature;
+  vtkSmartPointer<vtkDataArray> CellCenters;
+};
+
+/**
+ * Typical distance of samples: the largest spacing of an image; for other datasets the sum over its
+ * cells (ghosts left out) of diagonal / √dimension goes to `sum` and their number to `count`.
+ */
+void AddSampleSpacing(vtkDataSet* dataset, double& largest, double& sum, double& count);
+} // namespace noise
+
+#endif

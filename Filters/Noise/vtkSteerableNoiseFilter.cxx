@@ -1,0 +1,609 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSteerableNoiseFilter.h"
+
+#include "NoiseArrays.h"
+#include "NoiseImages.h"
+#include "NoiseSamples.h"
+#include "NoiseThreads.h"
+
+#include "vtkCellData.h"
+#include "vtkCommunicator.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+vtkStandardNewMacro(vtkSteerableNoiseFilter);
+vtkCxxSetObjectMacro(vtkSteerableNoiseFilter, Controller, vtkMultiProcessController);
+
+namespace
+{
+/// A dataset of the output that gets noise, and the array that steers it.
+struct Block
+{
+  vtkDataSet* DataSet;
+  vtkDataArray* Array = nullptr;
+  bool Cells = false;
+};
+
+/// What the ranks have to agree on; all of it combines by minimum or sum.
+struct Extremes
+{
+  double Bounds[6]; // lower corner, then the negated upper one
+  double LongestVector = 0.0;
+  double LargestSpacing = 0.0;
+  double SpacingSum = 0.0;
+  double SpacingCount = 0.0;
+
+  Extremes() { std::fill_n(this->Bounds, 6, std::numeric_limits<double>::infinity()); }
+
+  void Add(const Block& block)
+  {
+    if (block.DataSet->GetNumberOfPoints() > 0)
+    {
+      double bounds[6];
+      block.DataSet->GetBounds(bounds);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        if (std::isfinite(bounds[2 * axis]) && std::isfinite(bounds[2 * axis + 1]))
+        {
+          this->Bounds[axis] = std::min(this->Bounds[axis], bounds[2 * axis]);
+          this->Bounds[3 + axis] = std::min(this->Bounds[3 + axis], -bounds[2 * axis + 1]);
+        }
+      }
+    }
+    double range[2];
+    block.Array->GetFiniteRange(range, -1);
+    this->LongestVector = std::max(this->LongestVector, range[1]);
+    noise::AddSampleSpacing(
+      block.DataSet, this->LargestSpacing, this->SpacingSum, this->SpacingCount);
+  }
+
+  void Reduce(vtkMultiProcessController* controller)
+  {
+    if (!controller || controller->GetNumberOfProcesses() < 2)
+    {
+      return;
+    }
+    double least[8];
+    std::copy_n(this->Bounds, 6, least);
+    least[6] = -this->LongestVector;
+    least[7] = -this->LargestSpacing;
+    double all[8];
+    controller->AllReduce(least, all, 8, vtkCommunicator::MIN_OP);
+    std::copy_n(all, 6, this->Bounds);
+    this->LongestVector = -all[6];
+    this->LargestSpacing = -all[7];
+    const double sums[2] = { this->SpacingSum, this->SpacingCount };
+    double total[2];
+    controller->AllReduce(sums, total, 2, vtkCommunicator::SUM_OP);
+    this->SpacingSum = total[0];
+    this->SpacingCount = total[1];
+  }
+
+  double GetDiagonal() const
+  {
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double length = -this->Bounds[3 + axis] - this->Bounds[axis];
+      sum += std::isfinite(length) ? length * length : 0.0;
+    }
+    return std::sqrt(sum);
+  }
+
+  /// The mean has three digits, so that the order of its sum over ranks does not show.
+  double GetSampleSpacing() const
+  {
+    double mean = this->SpacingCount > 0.0 ? this->SpacingSum / this->SpacingCount : 0.0;
+    if (mean > 0.0)
+    {
+      const double unit = std::pow(10.0, std::floor(std::log10(mean)) - 2.0);
+      mean = std::round(mean / unit) * unit;
+    }
+    return std::max(mean, this->LargestSpacing);
+  }
+};
+
+vtkDataSetAttributes* GetAttributes(vtkDataSet* dataset, bool cells)
+{
+  return cells ? static_cast<vtkDataSetAttributes*>(dataset->GetCellData())
+               : dataset->GetPointData();
+}
+
+bool IsUsable(vtkDataArray* array)
+{
+  return array &&
+    (noise::IsVector(array->GetNumberOfComponents()) ||
+      noise::IsTensor(array->GetNumberOfComponents()));
+}
+
+/// Degenerate samples are counted by the kernel with the ghosts; these are the ghosts among them.
+vtkIdType CountDegenerateGhosts(const Block& block)
+{
+  vtkUnsignedCharArray* ghosts =
+    GetAttributes(block.DataSet, block.Cells)->GetArray(vtkDataSetAttributes::GhostArrayName())
+    ? vtkUnsignedCharArray::SafeDownCast(
+        GetAttributes(block.DataSet, block.Cells)->GetArray(vtkDataSetAttributes::GhostArrayName()))
+    : nullptr;
+  if (!ghosts || !noise::IsVector(block.Array->GetNumberOfComponents()))
+  {
+    return 0;
+  }
+  vtkIdType count = 0;
+  double tuple[9];
+  for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
+  {
+    if (ghosts->GetValue(i))
+    {
+      block.Array->GetTuple(i, tuple);
+      double length = 0.0;
+      for (int c = 0; c < block.Array->GetNumberOfComponents(); ++c)
+      {
+        length += std::abs(tuple[c]);
+      }
+      count += !(std::isfinite(length) && length > 0.0);
+    }
+  }
+  return count;
+}
+} // namespace
+
+struct vtkSteerableNoiseFilter::Internals
+{
+  vtkSteerableNoiseFilter* Self;
+  steerable::EvaluationCounts Counts;
+  vtkIdType Samples = 0;
+  vtkIdType BlocksWithout = 0;
+
+  steerable::NoiseParameters GetParameters(double time) const
+  {
+    const vtkSteerableNoiseFilter& f = *this->Self;
+    steerable::NoiseParameters p;
+    p.FeatureSize = f.FeatureSize;
+    p.Quality = f.Quality;
+    p.MinimumEigenvalue = f.MinimumEigenvalue;
+    p.EigenvalueSum = f.EigenvalueSum;
+    p.LatticeWindow = f.LatticeWindow;
+    p.Strength = f.Strength;
+    p.StrengthBy = static_cast<steerable::StrengthMode>(f.StrengthMode);
+    p.ReferenceMagnitude = f.ReferenceMagnitude;
+    p.MaskThreshold = f.MaskThreshold;
+    p.FollowCurvature = f.FollowCurvature;
+    p.Normalize = static_cast<steerable::Normalization>(f.Normalization);
+    p.Surflet = static_cast<steerable::Basis>(f.Basis);
+    p.Density = f.Density;
+    p.Motion = f.Animate || f.Phase != 0.0 || f.TimePeriod > 0.0;
+    p.Phase = f.Phase + (f.TimePeriod > 0.0 ? time / f.TimePeriod : 0.0);
+    p.Speed = f.Speed;
+    p.Octaves = f.Octaves;
+    p.Lacunarity = f.Lacunarity;
+    p.Gain = f.Gain;
+    p.Turbulence = f.Turbulence;
+    p.Interpolant = static_cast<steerable::Fade>(f.Fade);
+    p.Window = static_cast<steerable::Falloff>(f.Falloff);
+    p.Grid = static_cast<steerable::Lattice>(f.Lattice);
+    p.Gradients = static_cast<steerable::GradientSet>(f.GradientSet);
+    p.Period = { f.Period[0], f.Period[1], f.Period[2] };
+    p.Seed = static_cast<std::uint32_t>(f.Seed);
+    return p;
+  }
+
+  /// Finds the array of a block; false with `why` where there is none that can be used.
+  bool FindArray(Block& block, std::string& why) const
+  {
+    vtkInformation* info = this->Self->GetInputArrayInformation(0);
+    const int association = info->Has(vtkDataObject::FIELD_ASSOCIATION())
+      ? info->Get(vtkDataObject::FIELD_ASSOCIATION())
+      : vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS;
+    const char* name =
+      info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+    // The association that was asked for, then the other one.
+    const bool cellsFirst = association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+    for (const bool cells : { cellsFirst, !cellsFirst })
+    {
+      vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, cells);
+      vtkDataArray* array =
+        name && *name ? attributes->GetArray(name) : noise::FindDefaultArray(attributes);
+      if (!array)
+      {
+        continue;
+      }
+      // Chosen by default in a panel when nothing better is there, but no flow.
+      if (array == attributes->GetNormals() || array == attributes->GetTCoords() ||
+        array->GetDataType() == VTK_UNSIGNED_CHAR)
+      {
+        why = "Array '" + std::string(array->GetName() ? array->GetName() : "") +
+          "' holds normals, texture coordinates or colours, not vectors. Choose another one, or copy "
+          "it with the Calculator if it is meant.";
+        continue;
+      }
+      if (!IsUsable(array))
+      {
+        std::ostringstream message;
+        message << "Array '" << (array->GetName() ? array->GetName() : "") << "' has "
+                << array->GetNumberOfComponents()
+                << " component(s). Choose one with 2 or 3 (vectors) or 4, 6 or 9 (tensors).";
+        why = message.str();
+        continue;
+      }
+      block.Array = array;
+      block.Cells = cells;
+      return true;
+    }
+    if (why.empty())
+    {
+      why = name && *name
+        ? "There is no array '" + std::string(name) +
+          "' on points or cells. Choose one that exists."
+        : "There are no vectors. Name an array with 2 or 3 components (vectors) or 4, 6 or 9 "
+          "(tensors); three scalars can be merged with Merge Vector Components or the Calculator.";
+    }
+    return false;
+  }
+
+  void Process(const Block& block, const steerable::NoiseParameters& parameters,
+    const int* wholeExtent, double progressStart, double progressShare)
+  {
+    noise::Samples samples(block.DataSet, block.Array, block.Cells, wholeExtent);
+    const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
+    if (parameters.FollowCurvature)
+    {
+      samples.ComputeCurvature();
+    }
+    auto result =
+      noise::NewOutputArray(this->Self->ResultArrayName, 1, samples.GetNumberOfSamples());
+    float* values = result->GetPointer(0);
+    this->Counts += noise::ForEachPart(this->Self, samples.GetNumberOfParts(),
+      samples.GetNumberOfSamples(), progressStart, progressShare,
+      [&](std::size_t begin, std::size_t end)
+      { return samples.Evaluate(kernel, begin, end, values); });
+    this->Samples += samples.GetNumberOfSamples();
+    if (this->Counts.Degenerate > 0)
+    {
+      this->Counts.Degenerate -=
+        std::min<std::uint64_t>(this->Counts.Degenerate, CountDegenerateGhosts(block));
+    }
+
+    vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
+    if (this->Self->OutputMetric)
+    {
+      auto metrics = noise::NewOutputArray("Metric", 6, samples.GetNumberOfSamples());
+      float* tuples = metrics->GetPointer(0);
+      const vtkIdType count = samples.GetNumberOfSamples();
+      vtkSMPTools::For(0, count, 1024,
+        [&](vtkIdType begin, vtkIdType end)
+        { samples.EvaluateMetrics(parameters, begin, end, tuples); });
+      attributes->AddArray(metrics);
+    }
+    attributes->AddArray(result);
+    attributes->SetActiveScalars(this->Self->ResultArrayName);
+  }
+
+  void Report(
+    const Extremes& extremes, const steerable::NoiseParameters& parameters, bool composite)
+  {
+    std::ostringstream message;
+    if (this->Counts.Degenerate > 0)
+    {
+      message << "\n"
+              << this->Counts.Degenerate << " of " << this->Samples
+              << " samples have no direction (zero, NaN or infinite) and got isotropic noise; "
+                 "MaskThreshold blanks stagnant flow.";
+    }
+    if (composite && this->BlocksWithout > 0)
+    {
+      message << "\n"
+              << this->BlocksWithout
+              << " block(s) have no usable array and were passed on without noise.";
+    }
+    const double spacing = extremes.GetSampleSpacing();
+    const double finest =
+      parameters.FeatureSize / std::pow(parameters.Lacunarity, parameters.Octaves - 1);
+    if (spacing > 0.0 && finest < 3.999 * spacing)
+    {
+      message << "\nThe samples are " << spacing << " apart, too far for noise of FeatureSize "
+              << finest << ". Set FeatureSize to at least " << 4.0 * spacing
+              << ", or refine the data (Magnification on images, Resample to Image, Subdivide).";
+    }
+    if (!message.str().empty())
+    {
+      vtkWarningWithObjectMacro(this->Self, << message.str().substr(1));
+    }
+  }
+};
+
+//------------------------------------------------------------------------------
+vtkSteerableNoiseFilter::vtkSteerableNoiseFilter()
+{
+  this->SetInputArrayToProcess(
+    0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, vtkDataSetAttributes::VECTORS);
+  this->SetResultArrayName("SteerableNoise");
+  this->SetController(vtkMultiProcessController::GetGlobalController());
+}
+
+//------------------------------------------------------------------------------
+vtkSteerableNoiseFilter::~vtkSteerableNoiseFilter()
+{
+  this->SetResultArrayName(nullptr);
+  this->SetController(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkSteerableNoiseFilter::SetPhase(double phase)
+{
+  phase = std::isfinite(phase) ? phase - std::floor(phase) : 0.0;
+  if (this->Phase != phase)
+  {
+    this->Phase = phase;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkSteerableNoiseFilter::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSteerableNoiseFilter::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  if (this->TimePeriod > 0.0 && !inInfo->Has(SDDP::TIME_STEPS()) &&
+    !inInfo->Has(SDDP::TIME_RANGE()))
+  {
+    const double range[2] = { 0.0, this->TimePeriod };
+    outInfo->Set(SDDP::TIME_RANGE(), range, 2);
+  }
+  else if (!inInfo->Has(SDDP::TIME_RANGE()))
+  {
+    outInfo->Remove(SDDP::TIME_RANGE());
+  }
+  if (this->Magnification > 1 && vtkImageData::GetData(inInfo))
+  {
+    noise::MagnifyInformation(inInfo, outInfo, this->Magnification);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSteerableNoiseFilter::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  const bool magnify = this->Magnification > 1 && vtkImageData::GetData(inInfo);
+  // Curvature looks at the next samples, and so does interpolation.
+  const int border = (this->FollowCurvature ? 1 : 0) + (magnify ? 1 : 0);
+  inInfo->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(),
+    outInfo->Get(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS()) + border);
+  if (inInfo->Has(SDDP::WHOLE_EXTENT()) && outInfo->Has(SDDP::UPDATE_EXTENT()))
+  {
+    int whole[6];
+    int extent[6];
+    inInfo->Get(SDDP::WHOLE_EXTENT(), whole);
+    outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
+    const int fine = magnify ? this->Magnification : 1;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int low = static_cast<int>(std::floor(double(extent[2 * axis]) / fine)) - border;
+      const int high = static_cast<int>(std::ceil(double(extent[2 * axis + 1]) / fine)) + border;
+      extent[2 * axis] = std::max(low, whole[2 * axis]);
+      extent[2 * axis + 1] = std::min(high, whole[2 * axis + 1]);
+    }
+    inInfo->Set(SDDP::UPDATE_EXTENT(), extent, 6);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkSteerableNoiseFilter::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
+  vtkInformation* outInfo = outputVector->GetInformationObject(0);
+  vtkDataObject* input = vtkDataObject::GetData(inInfo);
+  vtkDataObject* output = vtkDataObject::GetData(outInfo);
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+
+  double time = 0.0;
+  if (outInfo->Has(SDDP::UPDATE_TIME_STEP()))
+  {
+    time = outInfo->Get(SDDP::UPDATE_TIME_STEP());
+  }
+  if (!this->ResultArrayName || !*this->ResultArrayName)
+  {
+    vtkErrorMacro("ResultArrayName is empty. Give the noise array a name.");
+    return 0;
+  }
+
+  Internals internals{ this };
+  std::vector<Block> blocks;
+  std::string why;
+  bool failed = false;
+  const auto addBlock = [&](vtkDataSet* dataset, bool required)
+  {
+    Block block{ dataset };
+    const bool empty = dataset->GetNumberOfPoints() == 0;
+    if (internals.FindArray(block, why))
+    {
+      blocks.push_back(block);
+    }
+    else if (!empty)
+    {
+      failed = failed || required;
+      ++internals.BlocksWithout;
+    }
+  };
+
+  // The output: shallow copies of the input's datasets, so that arrays can be added.
+  vtkCompositeDataSet* composite = vtkCompositeDataSet::SafeDownCast(output);
+  int wholeExtent[6];
+  bool hasWhole = false;
+  if (composite)
+  {
+    auto* inputs = vtkCompositeDataSet::SafeDownCast(input);
+    composite->CopyStructure(inputs);
+    composite->GetFieldData()->PassData(inputs->GetFieldData());
+    auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(inputs->NewIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      vtkDataObject* leaf = iterator->GetCurrentDataObject();
+      auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
+      copy->ShallowCopy(leaf);
+      composite->SetDataSet(iterator, copy);
+      if (auto* dataset = vtkDataSet::SafeDownCast(copy))
+      {
+        addBlock(dataset, false);
+      }
+    }
+    failed = blocks.empty() && internals.BlocksWithout > 0 && !this->Controller;
+  }
+  else
+  {
+    auto* dataset = vtkDataSet::SafeDownCast(output);
+    auto* image = vtkImageData::SafeDownCast(input);
+    hasWhole = image && outInfo->Has(SDDP::WHOLE_EXTENT());
+    if (image && this->Magnification > 1)
+    {
+      noise::Magnify(
+        image, inInfo, vtkImageData::SafeDownCast(output), outInfo, this->Magnification);
+    }
+    else
+    {
+      dataset->ShallowCopy(input);
+    }
+    if (hasWhole)
+    {
+      outInfo->Get(SDDP::WHOLE_EXTENT(), wholeExtent);
+    }
+    addBlock(dataset, true);
+  }
+
+  // Everything that ranks do together comes before anything that may fail on one of them.
+  steerable::NoiseParameters parameters = internals.GetParameters(time);
+  const bool needsMagnitude = this->StrengthMode == MAGNITUDE && this->ReferenceMagnitude <= 0.0;
+  Extremes extremes;
+  for (const Block& block : blocks)
+  {
+    extremes.Add(block);
+  }
+  if (this->FeatureSize <= 0.0 || needsMagnitude)
+  {
+    extremes.Reduce(this->Controller);
+  }
+  if (failed)
+  {
+    vtkErrorMacro(<< why);
+    return 0;
+  }
+  if (blocks.empty())
+  {
+    internals.Report(extremes, parameters, composite != nullptr);
+    return 1;
+  }
+  if (this->FeatureSize <= 0.0)
+  {
+    const double automatic =
+      std::max(0.01 * extremes.GetDiagonal(), 4.0 * extremes.GetSampleSpacing());
+    parameters.FeatureSize = automatic > 0.0 ? automatic : 1.0;
+  }
+  if (needsMagnitude)
+  {
+    parameters.ReferenceMagnitude = extremes.LongestVector > 0.0 ? extremes.LongestVector : 1.0;
+  }
+  this->ResolvedFeatureSize = parameters.FeatureSize;
+
+  try
+  {
+    for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
+    {
+      internals.Process(blocks[i], parameters, hasWhole ? wholeExtent : nullptr,
+        static_cast<double>(i) / blocks.size(), 1.0 / blocks.size());
+    }
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    return 0;
+  }
+  if (!composite)
+  {
+    noise::CropToUpdateExtent(vtkDataSet::SafeDownCast(output), outInfo);
+  }
+  if (this->TimePeriod > 0.0 && outInfo->Has(SDDP::UPDATE_TIME_STEP()))
+  {
+    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+  }
+  this->NumberOfDegenerateSamples = static_cast<vtkIdType>(internals.Counts.Degenerate);
+  this->NumberOfStagnantSamples = static_cast<vtkIdType>(internals.Counts.Stagnant);
+  internals.Report(extremes, parameters, composite != nullptr);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FeatureSize: " << this->FeatureSize << "\n";
+  os << indent << "ResolvedFeatureSize: " << this->ResolvedFeatureSize << "\n";
+  os << indent << "Quality: " << this->Quality << "\n";
+  os << indent << "MinimumEigenvalue: " << this->MinimumEigenvalue << "\n";
+  os << indent << "EigenvalueSum: " << this->EigenvalueSum << "\n";
+  os << indent << "LatticeWindow: " << this->LatticeWindow << "\n";
+  os << indent << "Strength: " << this->Strength << "\n";
+  os << indent << "StrengthMode: " << this->StrengthMode << "\n";
+  os << indent << "ReferenceMagnitude: " << this->ReferenceMagnitude << "\n";
+  os << indent << "Normalization: " << this->Normalization << "\n";
+  os << indent << "FollowCurvature: " << this->FollowCurvature << "\n";
+  os << indent << "Basis: " << this->Basis << "\n";
+  os << indent << "Density: " << this->Density << "\n";
+  os << indent << "Phase: " << this->Phase << "\n";
+  os << indent << "Animate: " << this->Animate << "\n";
+  os << indent << "Speed: " << this->Speed << "\n";
+  os << indent << "TimePeriod: " << this->TimePeriod << "\n";
+  os << indent << "Octaves: " << this->Octaves << "\n";
+  os << indent << "Lacunarity: " << this->Lacunarity << "\n";
+  os << indent << "Gain: " << this->Gain << "\n";
+  os << indent << "Turbulence: " << this->Turbulence << "\n";
+  os << indent << "Fade: " << this->Fade << "\n";
+  os << indent << "Falloff: " << this->Falloff << "\n";
+  os << indent << "Lattice: " << this->Lattice << "\n";
+  os << indent << "GradientSet: " << this->GradientSet << "\n";
+  os << indent << "Period: " << this->Period[0] << " " << this->Period[1] << " " << this->Period[2]
+     << "\n";
+  os << indent << "Magnification: " << this->Magnification << "\n";
+  os << indent << "MaskThreshold: " << this->MaskThreshold << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "ResultArrayName: " << (this->ResultArrayName ? this->ResultArrayName : "(none)")
+     << "\n";
+  os << indent << "OutputMetric: " << this->OutputMetric << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
+}

@@ -1,0 +1,365 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSteerableNoiseFilter
+ * @brief   noise that streaks along a vector field
+ *
+ * Takes any vtkDataSet, or a composite of them, with vectors (2 or 3 components) or tensors (4, 6 or 9)
+ * on its points or cells, and adds one float array of steerable Perlin noise (Rice 2025), which it
+ * makes the active scalars. Everything else is passed on; the input is not written.
+ *
+ * The value at a sample is a function of its place, its vector and the seed (with FollowCurvature: of
+ * its neighbours' vectors too), so it does not depend on the camera, on threads, on pieces or on ranks.
+ *
+ * Flat images get 2D noise in their plane; volumes get 3D noise; cells of dimension 2 in other datasets
+ * get 3D noise whose metric lies in the surface. Turned images use lattices along their own axes.
+ *
+ * Vectors without a direction (zero, NaN, infinite) get isotropic noise and are counted in one warning.
+ * A missing array is an error in a plain dataset; a block of a composite without it is passed on and
+ * counted. With FeatureSize 0, or ReferenceMagnitude 0 and StrengthMode Magnitude, the value is
+ * agreed on by all ranks of the Controller, which all have to take part.
+ *
+ * @sa
+ * vtkPolyDataSubbandNoise
+ */
+#ifndef vtkSteerableNoiseFilter_h
+#define vtkSteerableNoiseFilter_h
+
+#include "SteerableNoiseFiltersModule.h" // For export macro
+#include "vtkPassInputTypeAlgorithm.h"
+
+class vtkMultiProcessController;
+
+class STEERABLENOISEFILTERS_EXPORT vtkSteerableNoiseFilter : public vtkPassInputTypeAlgorithm
+{
+public:
+  static vtkSteerableNoiseFilter* New();
+  vtkTypeMacro(vtkSteerableNoiseFilter, vtkPassInputTypeAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum StrengthModeType
+  {
+    CONSTANT = 0,
+    MAGNITUDE = 1
+  };
+  enum NormalizationType
+  {
+    NONE = 0,
+    WEIGHT_SUM = 1,
+    UNIT_VARIANCE = 2
+  };
+  enum BasisType
+  {
+    GRADIENT = 0,
+    VALUE = 1,
+    STREAKS = 2
+  };
+  enum FadeType
+  {
+    CUBIC = 0,
+    QUINTIC = 1,
+    WIDE = 2
+  };
+  enum FalloffType
+  {
+    SEPARABLE = 0,
+    RADIAL = 1
+  };
+  enum LatticeType
+  {
+    SQUARE = 0,
+    JITTERED = 1,
+    SIMPLICIAL = 2
+  };
+  enum GradientSetType
+  {
+    UNIFORM = 0,
+    PERLIN = 1
+  };
+
+  ///@{
+  /**
+   * Side of a lattice cell in world units: the width of a streak is about one of it. 0, the default:
+   * 1/100 of the diagonal of the bounds of all blocks on all ranks, but not finer than 4 sample
+   * spacings. Negative values are clamped to 0.
+   */
+  vtkSetClampMacro(FeatureSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(FeatureSize, double);
+  ///@}
+
+  /// FeatureSize of the last execution, world units.
+  vtkGetMacro(ResolvedFeatureSize, double);
+
+  /// Samples of the last execution without a direction, ghosts not counted.
+  vtkGetMacro(NumberOfDegenerateSamples, vtkIdType);
+
+  /// Samples of the last execution at or below MaskThreshold.
+  vtkGetMacro(NumberOfStagnantSamples, vtkIdType);
+
+  ///@{
+  /// Length of streaks, 0 to 8, default 4: surflets reach Quality + 1 cells.
+  vtkSetClampMacro(Quality, int, 0, 8);
+  vtkGetMacro(Quality, int);
+  ///@}
+
+  ///@{
+  /// Smallest eigenvalue of the metric at Quality 0, 0.01 to 1, default 0.5: smaller is longer.
+  vtkSetClampMacro(MinimumEigenvalue, double, 0.01, 1.0);
+  vtkGetMacro(MinimumEigenvalue, double);
+  ///@}
+
+  ///@{
+  /**
+   * Trace of the metric, 2 to 16, default 4: larger is thinner streaks, with gaps from 4 on.
+   * Normalization WeightSum needs 4 or less.
+   */
+  vtkSetClampMacro(EigenvalueSum, double, 2.0, 16.0);
+  vtkGetMacro(EigenvalueSum, double);
+  ///@}
+
+  ///@{
+  /// The window over the lattice's axes, default on; without it the metric alone bounds a surflet.
+  vtkSetMacro(LatticeWindow, bool);
+  vtkGetMacro(LatticeWindow, bool);
+  vtkBooleanMacro(LatticeWindow, bool);
+  ///@}
+
+  ///@{
+  /// Anisotropy, 0 (isotropic noise) to 1, default 1.
+  vtkSetClampMacro(Strength, double, 0.0, 1.0);
+  vtkGetMacro(Strength, double);
+  ///@}
+
+  ///@{
+  /**
+   * CONSTANT, the default, or MAGNITUDE: Strength times the vector's length over
+   * ReferenceMagnitude, at most Strength.
+   */
+  vtkSetClampMacro(StrengthMode, int, CONSTANT, MAGNITUDE);
+  vtkGetMacro(StrengthMode, int);
+  ///@}
+
+  ///@{
+  /// Length of vectors with the full Strength; 0, the default: the longest on all ranks.
+  vtkSetClampMacro(ReferenceMagnitude, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(ReferenceMagnitude, double);
+  ///@}
+
+  ///@{
+  /**
+   * What the sum of surflets is divided by: NONE, WEIGHT_SUM (its weights, as the paper does) or
+   * UNIT_VARIANCE, the default: its standard deviation over all gradients, for even contrast.
+   */
+  vtkSetClampMacro(Normalization, int, NONE, UNIT_VARIANCE);
+  vtkGetMacro(Normalization, int);
+  ///@}
+
+  ///@{
+  /// Surflets bend along the streamlines, default on. Asks for one ghost level.
+  vtkSetMacro(FollowCurvature, bool);
+  vtkGetMacro(FollowCurvature, bool);
+  vtkBooleanMacro(FollowCurvature, bool);
+  ///@}
+
+  ///@{
+  /**
+   * GRADIENT, the default: signed noise; VALUE: blobs; STREAKS: sparse bright streaks from 0 up whose
+   * heads point downstream.
+   */
+  vtkSetClampMacro(Basis, int, GRADIENT, STREAKS);
+  vtkGetMacro(Basis, int);
+  ///@}
+
+  ///@{
+  /// Share of the lattice corners with a streak, 0.01 to 1, default 0.25.
+  vtkSetClampMacro(Density, double, 0.01, 1.0);
+  vtkGetMacro(Density, double);
+  ///@}
+
+  ///@{
+  /**
+   * Position in the loop of motion, [0, 1), default 0; only the fraction of what is set counts. Noise
+   * is still where Phase and TimePeriod are 0 and Animate is off.
+   */
+  void SetPhase(double phase);
+  vtkGetMacro(Phase, double);
+  ///@}
+
+  ///@{
+  /// Surflets are on their clocks at Phase 0 too, so that a track from 0 to 1 has no jump; default off.
+  vtkSetMacro(Animate, bool);
+  vtkGetMacro(Animate, bool);
+  vtkBooleanMacro(Animate, bool);
+  ///@}
+
+  ///@{
+  /// Half-lengths of a surflet that it travels in a loop, -4 to 4, default 1.
+  vtkSetClampMacro(Speed, double, -4.0, 4.0);
+  vtkGetMacro(Speed, double);
+  ///@}
+
+  ///@{
+  /**
+   * Pipeline time of one loop; time / TimePeriod is added to Phase. 0, the default: time does not
+   * matter. With it, an input without time steps becomes animated over the range 0 to TimePeriod.
+   */
+  vtkSetClampMacro(TimePeriod, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(TimePeriod, double);
+  ///@}
+
+  ///@{
+  /// Terms of the fractal sum, 1 to 16, default 1.
+  vtkSetClampMacro(Octaves, int, 1, 16);
+  vtkGetMacro(Octaves, int);
+  ///@}
+
+  ///@{
+  /// Factor of fineness from one octave to the next, 1 to 8, default 2.
+  vtkSetClampMacro(Lacunarity, double, 1.0, 8.0);
+  vtkGetMacro(Lacunarity, double);
+  ///@}
+
+  ///@{
+  /// Factor of amplitude from one octave to the next, 0 to 1, default 0.5.
+  vtkSetClampMacro(Gain, double, 0.0, 1.0);
+  vtkGetMacro(Gain, double);
+  ///@}
+
+  ///@{
+  /// Sum of the absolute values of the octaves, default off.
+  vtkSetMacro(Turbulence, bool);
+  vtkGetMacro(Turbulence, bool);
+  vtkBooleanMacro(Turbulence, bool);
+  ///@}
+
+  ///@{
+  /// Interpolant of the surflets: CUBIC, QUINTIC (default) or WIDE (Kensler's, twice as far).
+  vtkSetClampMacro(Fade, int, CUBIC, WIDE);
+  vtkGetMacro(Fade, int);
+  ///@}
+
+  ///@{
+  /// Shape of the lattice window: SEPARABLE (default) or RADIAL.
+  vtkSetClampMacro(Falloff, int, SEPARABLE, RADIAL);
+  vtkGetMacro(Falloff, int);
+  ///@}
+
+  ///@{
+  /// Where surflets stand: SQUARE (default), JITTERED or SIMPLICIAL.
+  vtkSetClampMacro(Lattice, int, SQUARE, SIMPLICIAL);
+  vtkGetMacro(Lattice, int);
+  ///@}
+
+  ///@{
+  /// Directions of the gradients: UNIFORM (default) or PERLIN, his twelve.
+  vtkSetClampMacro(GradientSet, int, UNIFORM, PERLIN);
+  vtkGetMacro(GradientSet, int);
+  ///@}
+
+  ///@{
+  /**
+   * Cells per axis after which the noise repeats; 0, the default: never. Not with SIMPLICIAL, and with
+   * several octaves Lacunarity must be a whole number.
+   */
+  vtkSetVector3Macro(Period, int);
+  vtkGetVector3Macro(Period, int);
+  ///@}
+
+  ///@{
+  /**
+   * Images only: samples per sample of the input along each axis, 1 to 16, default 1. Point arrays are
+   * interpolated linearly, cell arrays are repeated, vectors on cells interpolated for the noise.
+   */
+  vtkSetClampMacro(Magnification, int, 1, 16);
+  vtkGetMacro(Magnification, int);
+  ///@}
+
+  ///@{
+  /// Vectors at or below this length are stagnant: output 0 there, counted. 0, the default: none.
+  vtkSetClampMacro(MaskThreshold, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaskThreshold, double);
+  ///@}
+
+  ///@{
+  /// Another seed, another noise; default 0.
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /// Name of the array that is added, default "SteerableNoise".
+  vtkSetStringMacro(ResultArrayName);
+  vtkGetStringMacro(ResultArrayName);
+  ///@}
+
+  ///@{
+  /**
+   * Adds the metric of every sample, before curvature, as the 6-component float array "Metric": XX YY
+   * ZZ XY YZ XZ in units of 1 / FeatureSize². Flat images have 0 across their plane. Default off.
+   */
+  vtkSetMacro(OutputMetric, bool);
+  vtkGetMacro(OutputMetric, bool);
+  vtkBooleanMacro(OutputMetric, bool);
+  ///@}
+
+  ///@{
+  /// Ranks that agree on automatic values; default the global controller, null: this process alone.
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+protected:
+  vtkSteerableNoiseFilter();
+  ~vtkSteerableNoiseFilter() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*) override;
+  int RequestUpdateExtent(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*) override;
+  int RequestData(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*) override;
+
+  double FeatureSize = 0.0;
+  double ResolvedFeatureSize = 0.0;
+  vtkIdType NumberOfDegenerateSamples = 0;
+  vtkIdType NumberOfStagnantSamples = 0;
+  int Quality = 4;
+  double MinimumEigenvalue = 0.5;
+  double EigenvalueSum = 4.0;
+  bool LatticeWindow = true;
+  double Strength = 1.0;
+  int StrengthMode = CONSTANT;
+  double ReferenceMagnitude = 0.0;
+  int Normalization = UNIT_VARIANCE;
+  bool FollowCurvature = true;
+  int Basis = GRADIENT;
+  double Density = 0.25;
+  double Phase = 0.0;
+  bool Animate = false;
+  double Speed = 1.0;
+  double TimePeriod = 0.0;
+  int Octaves = 1;
+  double Lacunarity = 2.0;
+  double Gain = 0.5;
+  bool Turbulence = false;
+  int Fade = QUINTIC;
+  int Falloff = SEPARABLE;
+  int Lattice = SQUARE;
+  int GradientSet = UNIFORM;
+  int Period[3] = { 0, 0, 0 };
+  int Magnification = 1;
+  double MaskThreshold = 0.0;
+  int Seed = 0;
+  char* ResultArrayName = nullptr;
+  bool OutputMetric = false;
+  vtkMultiProcessController* Controller = nullptr;
+
+private:
+  vtkSteerableNoiseFilter(const vtkSteerableNoiseFilter&) = delete;
+  void operator=(const vtkSteerableNoiseFilter&) = delete;
+
+  struct Internals;
+};
+
+#endif

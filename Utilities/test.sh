@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Builds and runs every test: bash Utilities/test.sh [ctest options]
+. "$(dirname "${BASH_SOURCE[0]}")/build.sh"
+install_packages
+bash "$root/Utilities/check-layering.sh"
+build_project -DSTEERABLENOISE_DATA=ON -DBUILD_TESTING=ON
+cd "$build"
+ctest --output-on-failure "$@"

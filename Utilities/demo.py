@@ -40,7 +40,10 @@ SaveScreenshot(path, view)
 print(path)
 
 # Over speed: dark and light streaks whose opacity is how far they are from the mean.
+grey.Representation = "Surface"  # a slice has no opacity
+grey.SetScalarBarVisibility(view, False)
 speed = Show(wake, view)
+speed.Representation = "Surface"
 ColorBy(speed, ("CELLS", "velocity", "Magnitude"))
 speedColors = GetColorTransferFunction("velocity")
 speedColors.ApplyPreset("Viridis (matplotlib)", True)

@@ -1,0 +1,102 @@
+"""The proxies in pvpython: XML against C++, panel, help, and the filter on the wake."""
+import xml.etree.ElementTree as ElementTree
+
+import numpy
+import plugintest as pt
+import steerablenoise
+from paraview import simple
+
+pt.load_plugin()
+XML = {}
+for file in ("SteerableNoise.xml", "SubbandNoise.xml"):
+    try:
+        tree = ElementTree.parse("%s/Plugin/%s" % (pt.SOURCE, file))
+    except FileNotFoundError:
+        continue
+    for proxy in tree.getroot().iter("SourceProxy"):
+        XML[proxy.get("class")] = proxy
+
+PROPERTY_TAGS = ("DoubleVectorProperty", "IntVectorProperty", "StringVectorProperty")
+pt.check("vtkSteerableNoiseFilter" in XML, "the XML names vtkSteerableNoiseFilter")
+for name, proxy in XML.items():
+    algorithm = getattr(steerablenoise, name)()
+    properties = [p for tag in PROPERTY_TAGS for p in proxy.iter(tag)]
+    grouped = {p.get("name") for group in proxy.iter("PropertyGroup") for p in group}
+    for prop in properties:
+        key = prop.get("name")
+        if prop.get("default_values") is None or not prop.get("command", "").startswith("Set"):
+            continue
+        where = "%s.%s" % (name, key)
+        # One default: XML and C++ share it.
+        expected = prop.get("default_values").split()
+        value = getattr(algorithm, "Get" + key)()
+        value = value if isinstance(value, (tuple, list)) else (value,)
+        if prop.tag == "StringVectorProperty":
+            same = str(value[0]) == prop.get("default_values")
+        else:
+            same = [float(v) for v in value] == [float(e) for e in expected]
+        pt.check(same, "%s: C++ default %s, XML %s" % (where, value, expected))
+        # Help for each, in a group of the panel.
+        text = prop.find("Documentation")
+        pt.check(text is not None and len(text.text.strip()) > 20, where + " has help")
+        pt.check(key in grouped, where + " is in a group of the panel")
+        # The C++ class clamps to the XML's range.
+        for domain in list(prop.iter("DoubleRangeDomain")) + list(prop.iter("IntRangeDomain")):
+            for bound, beyond in (("min", -1e6), ("max", 1e6)):
+                if domain.get(bound) is None or len(expected) > 1 or key == "Phase":
+                    continue
+                convert = int if prop.tag.startswith("Int") else float
+                getattr(algorithm, "Set" + key)(convert(beyond))
+                clamped = getattr(algorithm, "Get" + key)()
+                pt.check(
+                    abs(clamped - float(domain.get(bound))) < 1e-12,
+                    "%s is clamped to its %s %s, got %s" % (where, bound, domain.get(bound), clamped),
+                )
+advanced = [
+    p for p in XML["vtkSteerableNoiseFilter"].iter() if p.get("panel_visibility") == "advanced"
+]
+pt.check(len(advanced) >= 10, "rare properties are advanced")
+
+# The filter on the wake, by the names scripts use.
+wake = simple.OpenDataFile(pt.WAKE)
+simple.UpdatePipeline(proxy=wake)
+noise = simple.SteerableNoise(Input=wake)
+pt.check(list(noise.SelectInputVectors) == ["CELLS", "velocity"], "the vectors are found")
+with pt.Messages() as messages:
+    simple.UpdatePipeline(proxy=noise)
+pt.check(messages.errors == 0, "no error: " + messages.text)
+data = noise.GetClientSideObject().GetOutput()
+values = pt.array(data)
+pt.check(values is not None and values.shape == (64000,), "one value for each cell")
+pt.check(values.dtype == numpy.float32, "float values")
+pt.check(bool(numpy.isfinite(values).all()), "finite values")
+pt.check(0.9 < values.std() < 1.1, "unit variance, got %g" % values.std())
+pt.check(abs(values.mean()) < 0.05, "zero mean, got %g" % values.mean())
+pt.check(data.GetCellData().GetScalars().GetName() == "SteerableNoise", "the noise is active")
+for name in ("velocity", "solid"):
+    pt.check(data.GetCellData().GetArray(name) is not None, name + " is passed on")
+pt.check(
+    wake.GetClientSideObject().GetOutput().GetCellData().GetArray("SteerableNoise") is None,
+    "the input is not written",
+)
+
+# Each property through the proxy changes the noise.
+CHANGES = dict(
+    FeatureSize=0.5, Quality=0, MinimumEigenvalue=0.2, EigenvalueSum=6.0, LatticeWindow=0,
+    Strength=0.5, StrengthMode="Magnitude", Normalization="None", FollowCurvature=0, Basis="Value",
+    Phase=0.3, Animate=1, Octaves=2, Turbulence=1, Fade="Cubic", Falloff="Radial",
+    Lattice="Jittered", GradientSet="Perlin", Period=[4, 4, 0], MaskThreshold=0.5, Seed=7,
+)
+for name, value in CHANGES.items():
+    changed = simple.SteerableNoise(Input=wake, **{name: value})
+    simple.UpdatePipeline(proxy=changed)
+    other = pt.array(changed.GetClientSideObject().GetOutput())
+    pt.check(numpy.isfinite(other).all() and abs(other - values).max() > 1e-3, name + " matters")
+    simple.Delete(changed)
+fine = simple.SteerableNoise(Input=wake, Magnification=2, OutputMetric=1, ResultArrayName="n")
+simple.UpdatePipeline(proxy=fine)
+data = fine.GetClientSideObject().GetOutput()
+pt.check(pt.array(data, "n").shape == (4 * 64000,), "Magnification refines the image")
+pt.check(data.GetBounds() == wake.GetClientSideObject().GetOutput().GetBounds(), "same bounds")
+pt.check(pt.array(data, "Metric").shape == (4 * 64000, 6), "OutputMetric adds six components")
+pt.finish()

@@ -1,0 +1,69 @@
+"""Run by TestRanks.py under pvbatch: noise of several datasets, saved with places for comparison."""
+import os
+import sys
+
+import numpy
+import plugintest as pt
+from paraview import simple
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+folder = sys.argv[1]
+pt.load_plugin()
+controller = vtkMultiProcessController.GetGlobalController()
+rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
+
+
+def sources():
+    yield "wavelet", simple.Wavelet(WholeExtent=[-12, 12, -9, 9, -7, 8]), "Gradient"
+    yield "wake", simple.OpenDataFile(pt.WAKE), None
+    shared = lambda name: os.path.join(pt.SHARED, name)
+    if os.path.exists(shared("disk_out_ref.ex2")):
+        yield "disk", simple.ExodusIIReader(FileName=[shared("disk_out_ref.ex2")]), None
+        yield "disk_distributed", simple.ExodusIIReader(FileName=[shared("disk_out_ref.ex2")]), "Redistribute"
+        yield "multicomb", simple.OpenDataFile(shared("multicomb.vtm")), None
+
+
+def save(name, noise):
+    """Places and values of all samples that are not ghosts, one file a rank."""
+    rows = []
+    for leaf in pt.leaves(noise.GetClientSideObject().GetOutputDataObject(0)):
+        values = pt.array(leaf)
+        if values is None or len(values) == 0:
+            continue
+        cells = len(values) != leaf.GetNumberOfPoints() or leaf.GetPointData().GetArray("SteerableNoise") is None
+        ghosts = (leaf.GetCellData() if cells else leaf.GetPointData()).GetArray("vtkGhostType")
+        for i, value in enumerate(values):
+            if ghosts and ghosts.GetTuple1(i):
+                continue
+            if cells:
+                bounds = leaf.GetCell(i).GetBounds()
+                place = [(bounds[2 * a] + bounds[2 * a + 1]) / 2 for a in range(3)]
+            else:
+                place = leaf.GetPoint(i)
+            rows.append(list(place) + [value])
+    numpy.save(os.path.join(folder, "%s.%d.%d.npy" % (name, ranks, rank)), numpy.array(rows).reshape(-1, 4))
+
+
+for name, source, preparation in sources():
+    vectors = None
+    if preparation == "Gradient":
+        source = simple.Gradient(Input=source, ScalarArray=["POINTS", "RTData"])
+        vectors = ["POINTS", "Gradient"]
+    elif preparation == "Redistribute":
+        source = simple.RedistributeDataSet(Input=simple.MergeBlocks(Input=source))
+        # Renamed after 5.11.
+        ghosts = getattr(simple, "GhostCells", None) or simple.GhostCellsGenerator
+        source = ghosts(Input=source)
+    if name == "wake":
+        vectors = ["CELLS", "velocity"]
+    if name.startswith("disk"):
+        vectors = ["POINTS", "V"]
+    if name == "multicomb":
+        vectors = ["POINTS", "Momentum"]
+    for curvature in (0, 1):
+        noise = simple.SteerableNoise(
+            Input=source, SelectInputVectors=vectors, FollowCurvature=curvature)
+        simple.UpdatePipeline(proxy=noise)
+        save("%s_%d" % (name, curvature), noise)
+
+print("rank %d of %d done" % (rank, ranks))

@@ -73,7 +73,7 @@ AxialMetric<N> MetricFromVector(const NoiseParameters& parameters, const Vector<
 AxialMetric<3> MetricFromSurfaceVector(
   const NoiseParameters& parameters, const Vector<3>& vector, const Vector<3>& normal)
 {
-  if (normal.isZero(0.0))
+  if (normal.isZero(0.0) || !normal.allFinite())
   {
     return MetricFromVector<3>(parameters, vector);
   }

@@ -67,7 +67,7 @@ AxialMetric<N> MetricFromVector(const NoiseParameters& parameters, const Vector<
 
 /**
  * Vector on a surface with this normal, projected on the tangent plane. The normal may have any
- * length; 0: not on a surface, the metric is that of the vector in space.
+ * length; 0 or not finite: not on a surface, the metric is that of the vector in space.
  */
 AxialMetric<3> MetricFromSurfaceVector(
   const NoiseParameters& parameters, const Vector<3>& vector, const Vector<3>& normal);

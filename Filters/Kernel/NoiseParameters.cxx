@@ -46,8 +46,12 @@ void NoiseParameters::Validate() const
   Require(this->Lacunarity >= 1.0 && this->Lacunarity <= 8.0, "Lacunarity", this->Lacunarity,
     "from 1 to 8");
   Require(this->Gain >= 0.0 && this->Gain <= 1.0, "Gain", this->Gain, "from 0 to 1");
+  Require(this->LatticeWindow || this->AnisotropicWeight, "LatticeWindow", 0,
+    "on without AnisotropicWeight: one of them must bound a surflet");
   for (int cells : this->Period)
   {
+    Require(cells * std::pow(this->Lacunarity, this->Octaves - 1) < 1073741824.0, "Period", cells,
+      "less than 2^30 cells in the last octave");
     Require(cells >= 0, "Period", cells, "0 or more");
     Require(cells == 0 || this->Grid != Lattice::Simplicial, "Period", cells,
       "0 on the Simplicial lattice, whose axes are oblique");

@@ -84,6 +84,7 @@ NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field
   setup.Curved = curved;
   setup.SingleCell = p.Quality == 0 && p.LatticeWindow && !setup.Biaxial && !curved &&
     p.Normalize == Normalization::None;
+  setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;
   const bool jittered = p.Grid == Lattice::Jittered;
   const bool streaks = p.Surflet == Basis::Streaks && !jittered;
   setup.JitterDown = streaks ? 0.5f : 0.0f;

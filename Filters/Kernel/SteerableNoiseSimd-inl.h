@@ -46,6 +46,12 @@ HWY_INLINE V Dot(const V (&a)[N], const V (&b)[N])
   return sum;
 }
 
+/// The 16 leading bits of a float: a product with a number of 8 bits is exact.
+HWY_INLINE V HighPart(V v)
+{
+  return hn::And(v, hn::BitCast(DF(), hn::Set(DU(), HighPartMask)));
+}
+
 HWY_INLINE float LeastLane(V v)
 {
   return hn::GetLane(hn::MinOfLanes(DF(), v));
@@ -425,11 +431,16 @@ template <int N>
 struct Frame
 {
   V U[N];
+  /// u in two parts, see Walk::SetRow (2D).
+  V UHigh[2];
+  V ULow[2];
   V M[N];
   V Along;
   V Across;
   V Second;
   V Bend[N];
+  /// The bend along the normal n = (-u_y, u_x), all there is of it in 2D.
+  V BendAcross;
   V Sense;
 
   HWY_INLINE Frame(
@@ -437,6 +448,7 @@ struct Frame
     : Along(Load(block.Along + i))
     , Across(Load(block.Across + i))
     , Second(Across)
+    , BendAcross(hn::Zero(DF()))
     , Sense(Load(block.Sense + i))
   {
     for (int axis = 0; axis < N; ++axis)
@@ -444,6 +456,14 @@ struct Frame
       this->U[axis] = Load(block.U[axis] + i);
       this->M[axis] = hn::Zero(DF());
       this->Bend[axis] = hn::Zero(DF());
+    }
+    if constexpr (N == 2)
+    {
+      for (int axis = 0; axis < 2; ++axis)
+      {
+        this->UHigh[axis] = HighPart(this->U[axis]);
+        this->ULow[axis] = Load(block.ULow[axis] + i);
+      }
     }
     if (setup.Biaxial)
     {
@@ -464,7 +484,8 @@ struct Frame
   {
     for (int axis = 0; axis < N; ++axis)
     {
-      this->Bend[axis] = hn::Mul(Load(block.Bend[axis] + i), Const(featureSize));
+      this->Bend[axis] =
+        hn::Mul(hn::Mul(Load(block.Bend[axis] + i), Const(featureSize)), this->Sense);
     }
     const V parallel = Dot(this->Bend, this->U);
     for (int axis = 0; axis < N; ++axis)
@@ -477,6 +498,10 @@ struct Frame
     for (int axis = 0; axis < N; ++axis)
     {
       this->Bend[axis] = hn::Mul(this->Bend[axis], clamp);
+    }
+    if constexpr (N == 2)
+    {
+      this->BendAcross = hn::MulSub(this->U[0], this->Bend[1], hn::Mul(this->U[1], this->Bend[0]));
     }
     const V squared = hn::Min(length2, one);
     const V keeps = hn::Sub(one, squared); // CurvatureKeeps
@@ -580,6 +605,12 @@ public:
         Variant ? static_cast<float>(setup.LatticeSteps[axis][0]) : (axis == 0 ? 1.0f : 0.0f));
     }
     this->RootAlong = hn::Sqrt(frame.Along);
+    if constexpr (N == 2)
+    {
+      const V product = hn::Mul(frame.U[1], f[0]);
+      this->CrossFraction =
+        hn::Sub(hn::MulSub(frame.U[0], f[1], product), hn::MulSub(frame.U[1], f[0], product));
+    }
     this->SetReach();
   }
 
@@ -755,7 +786,15 @@ private:
     else
     {
       this->RowV[0] = hn::Neg(this->Fraction[0]);
-      this->RowV[1] = hn::Sub(Const(static_cast<float>(oy)), this->Fraction[1]);
+      const V row = Const(static_cast<float>(oy));
+      this->RowV[1] = hn::Sub(row, this->Fraction[1]);
+      if constexpr (N == 2)
+      {
+        // u x v for a far corner is a small difference of large products. The high parts of u have
+        // 16 bits, so their products with corners and the difference are exact.
+        this->CrossRow = hn::Mul(this->F.UHigh[0], row);
+        this->CrossRest = hn::MulSub(this->F.ULow[0], row, this->CrossFraction);
+      }
       if constexpr (N == 3)
       {
         this->RowV[2] = hn::Sub(Const(static_cast<float>(oz)), this->Fraction[2]);
@@ -934,19 +973,42 @@ private:
       }
     }
 
-    // Along the flow and across it: s, and t as a vector; both bent and moved.
+    // Along the flow and across it: s, and t as a vector (in 2D as a number along the normal n).
     V s = Dot(v, this->F.U);
     V t[N];
-    for (int i = 0; i < N; ++i)
+    if constexpr (N == 2)
     {
-      t[i] = hn::NegMulAdd(s, this->F.U[i], v[i]);
+      t[0] = Variant ? hn::MulSub(this->F.U[0], v[1], hn::Mul(this->F.U[1], v[0]))
+                     : hn::Add(hn::NegMulAdd(this->F.UHigh[1], offset, this->CrossRow),
+                         hn::NegMulAdd(this->F.ULow[1], offset, this->CrossRest));
+    }
+    else
+    {
+      for (int i = 0; i < N; ++i)
+      {
+        t[i] = hn::NegMulAdd(s, this->F.U[i], v[i]);
+      }
+      // u has not quite length 1 and s is rounded: what t still has of u is large beside it.
+      const V rest = Dot(t, this->F.U);
+      for (int i = 0; i < N; ++i)
+      {
+        t[i] = hn::NegMulAdd(rest, this->F.U[i], t[i]);
+      }
+      s = hn::Add(s, rest);
     }
     if (this->Setup.Curved)
     {
       const V sag = hn::Mul(hn::Mul(Const(0.5f), s), s);
-      for (int i = 0; i < N; ++i)
+      if constexpr (N == 2)
       {
-        t[i] = hn::NegMulAdd(sag, this->F.Bend[i], t[i]);
+        t[0] = hn::NegMulAdd(sag, this->F.BendAcross, t[0]);
+      }
+      else
+      {
+        for (int i = 0; i < N; ++i)
+        {
+          t[i] = hn::NegMulAdd(sag, this->F.Bend[i], t[i]);
+        }
       }
     }
     V amplitude = Const(1.0f);
@@ -967,9 +1029,10 @@ private:
     }
 
     const V ks = hn::Mul(this->F.Along, s);
-    V across2 = hn::Mul(this->F.Across, Dot(t, t));
+    const V t2 = N == 2 ? hn::Mul(t[0], t[0]) : Dot(t, t);
+    V across2 = hn::Mul(this->F.Across, t2);
     V r = hn::Zero(DF());
-    if (this->Setup.Biaxial)
+    if (N == 3 && this->Setup.Biaxial)
     {
       r = Dot(t, this->F.M);
       across2 = hn::MulAdd(hn::Mul(hn::Sub(this->F.Second, this->F.Across), r), r, across2);
@@ -1005,16 +1068,25 @@ private:
 
     // G v' in the axes of the metric, then the gradient.
     V Gv[N];
-    for (int i = 0; i < N; ++i)
+    if constexpr (N == 2)
     {
-      Gv[i] = hn::MulAdd(ks, this->F.U[i], hn::Mul(this->F.Across, t[i]));
+      const V bt = hn::Mul(this->F.Across, t[0]);
+      Gv[0] = hn::MulSub(ks, this->F.U[0], hn::Mul(bt, this->F.U[1]));
+      Gv[1] = hn::MulAdd(ks, this->F.U[1], hn::Mul(bt, this->F.U[0]));
     }
-    if (this->Setup.Biaxial)
+    else
     {
-      const V er = hn::Mul(hn::Sub(this->F.Second, this->F.Across), r);
       for (int i = 0; i < N; ++i)
       {
-        Gv[i] = hn::MulAdd(er, this->F.M[i], Gv[i]);
+        Gv[i] = hn::MulAdd(ks, this->F.U[i], hn::Mul(this->F.Across, t[i]));
+      }
+      if (this->Setup.Biaxial)
+      {
+        const V er = hn::Mul(hn::Sub(this->F.Second, this->F.Across), r);
+        for (int i = 0; i < N; ++i)
+        {
+          Gv[i] = hn::MulAdd(er, this->F.M[i], Gv[i]);
+        }
       }
     }
     V g[N];
@@ -1073,6 +1145,9 @@ private:
   V InverseA;
   V RowV[N];
   V RowWindow;
+  V CrossFraction;
+  V CrossRow;
+  V CrossRest;
   Sums Total;
 };
 
@@ -1120,11 +1195,11 @@ HWY_INLINE void AddOctave(const NoiseSetup& setup, const OctaveSetup& octave, Me
 
 /**
  * Unit vectors of `count` tuples of 3 floats, 0 where there is none, and their lengths. In 2D the
- * third component is not looked at.
+ * third component is not looked at. `low`: also what stays behind the high parts.
  */
 template <int N>
-HWY_NOINLINE void UnitVectors(
-  const float* tuples, std::size_t count, float* const (&unit)[3], float* length)
+HWY_NOINLINE void UnitVectors(const float* tuples, std::size_t count, float* const (&unit)[3],
+  float* length, float* const* low = nullptr)
 {
   HWY_ALIGN float tail[3 * Lanes] = {};
   for (std::size_t i = 0; i < count; i += Lanes)
@@ -1148,7 +1223,13 @@ HWY_NOINLINE void UnitVectors(
     const V inverse = hn::IfThenElseZero(good, hn::Div(Const(1.0f), norm));
     for (int axis = 0; axis < N; ++axis)
     {
-      hn::StoreU(hn::IfThenElseZero(good, hn::Mul(u[axis], inverse)), DF(), unit[axis] + i);
+      const V component = hn::IfThenElseZero(good, hn::Mul(u[axis], inverse));
+      hn::StoreU(component, DF(), unit[axis] + i);
+      if (low)
+      {
+        const V rest = hn::MulSub(u[axis], inverse, HighPart(component));
+        hn::StoreU(hn::IfThenElseZero(good, rest), DF(), low[axis] + i);
+      }
     }
     hn::StoreU(norm, DF(), length + i);
     if (!hn::AllTrue(DF(), good))
@@ -1169,6 +1250,10 @@ HWY_NOINLINE void UnitVectors(
           for (int axis = 0; axis < N; ++axis)
           {
             unit[axis][i + lane] = static_cast<float>(vector[axis]);
+            if (low)
+            {
+              low[axis][i + lane] = LowPart(vector[axis]);
+            }
           }
         }
         length[i + lane] = any ? static_cast<float>(std::sqrt(norm2)) : 0.0f;
@@ -1178,32 +1263,34 @@ HWY_NOINLINE void UnitVectors(
 }
 
 /**
- * Projects the unit vectors of a block on the tangent planes of its normals; a sample without a normal
- * is not on a surface and keeps its vector.
+ * Unit vectors of a block projected on the tangent planes of its normals, in double since a steep
+ * vector leaves little; a sample without a normal is not on a surface and keeps its vector.
  */
-HWY_NOINLINE void ProjectOnSurface(MetricBlock& block, std::size_t count)
+void ProjectOnSurface(
+  const float* vectors, const float* normals, std::size_t count, MetricBlock& block)
 {
-  for (std::size_t i = 0; i < count; i += Lanes)
+  for (std::size_t i = 0; i < count; ++i)
   {
-    V u[3];
-    V m[3];
-    for (int axis = 0; axis < 3; ++axis)
+    const Vector<3> normal = Eigen::Map<const Eigen::Vector3f>(normals + 3 * i).cast<double>();
+    const double length = normal.norm();
+    const bool onSurface = length > 0.0 && std::isfinite(length);
+    const Vector<3> m = onSurface ? Vector<3>(normal / length) : Vector<3>::Zero();
+    Vector<3> u(block.U[0][i], block.U[1][i], block.U[2][i]);
+    if (onSurface && block.Length[i] > 1e-15f && block.Length[i] < 1e15f)
     {
-      u[axis] = Load(block.U[axis] + i);
-      m[axis] = Load(block.M[axis] + i);
+      u = Eigen::Map<const Eigen::Vector3f>(vectors + 3 * i).cast<double>() / block.Length[i];
     }
-    const V out = Dot(u, m);
-    for (int axis = 0; axis < 3; ++axis)
+    if (onSurface && !u.isZero(0.0))
     {
-      u[axis] = hn::NegMulAdd(out, m[axis], u[axis]);
+      u -= u.dot(m) * m;
+      // A vector along the normal has no direction on the surface: what is left of it is rounding.
+      const double inPlane = u.norm();
+      u = inPlane > 1e-5 ? Vector<3>(u / inPlane) : Vector<3>::Zero();
     }
-    const V length2 = Dot(u, u);
-    // A vector along the normal has no direction on the surface: what is left of it is rounding.
-    const V scale = hn::IfThenElseZero(
-      hn::Gt(length2, Const(1e-10f)), hn::Div(Const(1.0f), hn::Sqrt(length2)));
     for (int axis = 0; axis < 3; ++axis)
     {
-      hn::StoreU(hn::Mul(u[axis], scale), DF(), block.U[axis] + i);
+      block.U[axis][i] = static_cast<float>(u[axis]);
+      block.M[axis][i] = static_cast<float>(m[axis]);
     }
   }
 }
@@ -1252,8 +1339,8 @@ HWY_NOINLINE void MetricsOfDirections(
     const auto onSurface = hn::Gt(m2, Const(0.5f));
     hn::StoreU(hn::MulAdd(strength, hn::IfThenElse(onSurface, surfaceAcross, across), one), DF(),
       block.Across + i);
-    hn::StoreU(hn::MulAdd(strength, hn::IfThenElse(onSurface, normal, across), one), DF(),
-      block.Second + i);
+    hn::StoreU(
+      hn::MulAdd(strength, hn::IfThenElse(onSurface, normal, across), one), DF(), block.Second + i);
   }
 }
 
@@ -1319,6 +1406,7 @@ void ClearTail(MetricBlock& block, std::size_t count)
     for (int axis = 0; axis < 3; ++axis)
     {
       block.U[axis][i] = block.M[axis][i] = block.Bend[axis][i] = 0.0f;
+      block.ULow[axis % 2][i] = 0.0f;
       block.Fraction[axis][i] = count > 0 ? block.Fraction[axis][count - 1] : 0.0f;
       block.Cell[axis][i] = count > 0 ? block.Cell[axis][count - 1] : 0;
     }
@@ -1339,6 +1427,10 @@ void MetricsOfTensors(
     {
       block.U[axis][i] = static_cast<float>(metric.Direction[axis]);
       block.M[axis][i] = static_cast<float>(metric.SecondAxis[axis]);
+      if constexpr (N == 2)
+      {
+        block.ULow[axis][i] = LowPart(metric.Direction[axis]);
+      }
     }
     block.Along[i] = static_cast<float>(metric.Along);
     block.Across[i] = static_cast<float>(metric.Across);
@@ -1387,13 +1479,14 @@ void Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
     MetricsOfTensors<N>(setup, field.Tensors->Read(first, count, block.Tuples), count, block);
     return;
   }
-  UnitVectors<N>(field.Vectors->Read(first, count, block.Tuples), count,
-    { block.U[0], block.U[1], block.U[2] }, block.Length);
+  float* const low[2] = { block.ULow[0], block.ULow[1] };
+  const float* vectors = field.Vectors->Read(first, count, block.Tuples);
+  UnitVectors<N>(
+    vectors, count, { block.U[0], block.U[1], block.U[2] }, block.Length, N == 2 ? low : nullptr);
   if (field.Normals)
   {
-    UnitVectors<3>(field.Normals->Read(first, count, block.Tuples), count,
-      { block.M[0], block.M[1], block.M[2] }, block.Noise);
-    ProjectOnSurface(block, count);
+    const float* normals = field.Normals->Read(first, count, block.Tuples + 3 * BlockRoom);
+    ProjectOnSurface(vectors, normals, count, block);
   }
   MetricsOfDirections<N>(setup, block, count);
 }
@@ -1437,6 +1530,67 @@ void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t count, floa
   counts.Degenerate += count - static_cast<std::size_t>(directed);
 }
 
+/// Cells and fractions of a block of positions: floor and difference in double, the rest in float.
+template <int N>
+HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octave,
+  const double* positions, std::size_t count, MetricBlock& block)
+{
+  HWY_ALIGN double tail[3 * Lanes] = {};
+  constexpr std::size_t half = hn::MaxLanes(DD());
+  const bool oblique = setup.Parameters.Grid == Lattice::Simplicial;
+  const VD scale = hn::Set(DD(), octave.CellsPerUnit);
+  // Adding this leaves the integer, modulo 2^32, in the low bits.
+  const VD toInteger = hn::Set(DD(), 6755399441055744.0);
+  const VD rounding = hn::Set(DD(), setup.CellRounding);
+  for (std::size_t i = 0; i < count; i += half)
+  {
+    const double* from = positions + 3 * i;
+    if (i + half > count)
+    {
+      std::copy(from, positions + 3 * count, tail);
+      from = tail;
+    }
+    VD p[3];
+    hn::LoadInterleaved3(DD(), from, p[0], p[1], p[2]);
+    for (VD& coordinate : p)
+    {
+      coordinate = hn::Mul(coordinate, scale);
+    }
+    if (oblique)
+    {
+      const VD q[3] = { p[0], p[1], p[2] };
+      for (int axis = 0; axis < N; ++axis)
+      {
+        p[axis] = hn::Mul(q[0], hn::Set(DD(), setup.LatticeIndices[axis][0]));
+        for (int j = 1; j < N; ++j)
+        {
+          p[axis] = hn::MulAdd(q[j], hn::Set(DD(), setup.LatticeIndices[axis][j]), p[axis]);
+        }
+      }
+    }
+    for (int axis = 0; axis < N; ++axis)
+    {
+      // A place that is not finite is cell 0: it must not spoil its neighbours' walk.
+      p[axis] =
+        hn::IfThenElseZero(hn::Lt(hn::Abs(p[axis]), hn::Set(DD(), 4503599627370496.0)), p[axis]);
+      VD cell = hn::Floor(hn::Add(p[axis], rounding));
+      hn::StoreU(hn::DemoteTo(DFH(), hn::Sub(p[axis], cell)), DFH(), block.Fraction[axis] + i);
+      if (octave.Period[axis] > 0)
+      {
+        const VD period = hn::Set(DD(), static_cast<double>(octave.Period[axis]));
+        cell = hn::NegMulAdd(hn::Floor(hn::Div(cell, period)), period, cell);
+      }
+      HWY_ALIGN std::uint64_t bits[half];
+      const hn::ScalableTag<std::uint64_t> d64;
+      hn::Store(hn::BitCast(d64, hn::Add(cell, toInteger)), d64, bits);
+      for (std::size_t lane = 0; lane < half; ++lane)
+      {
+        block.Cell[axis][i + lane] = static_cast<std::uint32_t>(bits[lane]);
+      }
+    }
+  }
+}
+
 // ---- images -------------------------------------------------------------------------------------
 
 /// Place of sample `index` of a grid axis, in cells of an octave.
@@ -1478,7 +1632,7 @@ struct ImageOctave
     for (std::int64_t i = 0; i < samples; ++i)
     {
       const double place = CellPlace(grid, 0, i, octave.CellsPerUnit);
-      const double cell = std::floor(place);
+      const double cell = std::floor(place + setup.CellRounding);
       cells[i] = static_cast<std::int64_t>(cell);
       this->Fraction[i] = static_cast<float>(place - cell);
     }
@@ -1613,7 +1767,7 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
         V fraction[N];
         for (int axis = 1; axis < N; ++axis)
         {
-          const double floored = std::floor(places[axis]);
+          const double floored = std::floor(places[axis] + setup.CellRounding);
           cell[axis] = static_cast<std::int64_t>(floored);
           fraction[axis] = Const(static_cast<float>(places[axis] - floored));
         }
@@ -1626,7 +1780,31 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
             f[axis] = fraction[axis];
           }
         };
-        if (image.Rows)
+        if (setup.Parameters.Grid == Lattice::Simplicial)
+        {
+          for (std::size_t i = 0; i < count; ++i)
+          {
+            for (int axis = 0; axis < 3; ++axis)
+            {
+              const std::int64_t index = axis == 0 ? i0 + static_cast<std::int64_t>(i)
+                : axis == 1                        ? j
+                                                   : k;
+              block->Positions[3 * i + axis] = CellPlace(grid, axis, index, 1.0);
+            }
+          }
+          LocatePoints<N>(setup, octave, block->Positions, count, *block);
+          LaneCorners<N> corners(octave, setup.Parameters.Gradients);
+          AddOctave<N, true>(setup, octave, *block, count, corners, counts.VisitedCorners,
+            [&](std::size_t i, V(&f)[N]) HWY_ATTR
+            {
+              corners.SetCells(block->Cell[0] + i, block->Cell[1] + i, block->Cell[2] + i);
+              for (int axis = 0; axis < N; ++axis)
+              {
+                f[axis] = Load(block->Fraction[axis] + i);
+              }
+            });
+        }
+        else if (image.Rows)
         {
           image.Rows->MoveTo(cell[1], cell[2]);
           RowCorners<N> corners(*image.Rows);
@@ -1668,63 +1846,6 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
 }
 
 // ---- points -------------------------------------------------------------------------------------
-
-/// Cells and fractions of a block of positions: floor and difference in double, the rest in float.
-template <int N>
-HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octave,
-  const double* positions, std::size_t count, MetricBlock& block)
-{
-  HWY_ALIGN double tail[3 * Lanes] = {};
-  constexpr std::size_t half = hn::MaxLanes(DD());
-  const bool oblique = setup.Parameters.Grid == Lattice::Simplicial;
-  const VD scale = hn::Set(DD(), octave.CellsPerUnit);
-  // Adding this leaves the integer, modulo 2^32, in the low bits.
-  const VD toInteger = hn::Set(DD(), 6755399441055744.0);
-  for (std::size_t i = 0; i < count; i += half)
-  {
-    const double* from = positions + 3 * i;
-    if (i + half > count)
-    {
-      std::copy(from, positions + 3 * count, tail);
-      from = tail;
-    }
-    VD p[3];
-    hn::LoadInterleaved3(DD(), from, p[0], p[1], p[2]);
-    for (VD& coordinate : p)
-    {
-      coordinate = hn::Mul(coordinate, scale);
-    }
-    if (oblique)
-    {
-      const VD q[3] = { p[0], p[1], p[2] };
-      for (int axis = 0; axis < N; ++axis)
-      {
-        p[axis] = hn::Mul(q[0], hn::Set(DD(), setup.LatticeIndices[axis][0]));
-        for (int j = 1; j < N; ++j)
-        {
-          p[axis] = hn::MulAdd(q[j], hn::Set(DD(), setup.LatticeIndices[axis][j]), p[axis]);
-        }
-      }
-    }
-    for (int axis = 0; axis < N; ++axis)
-    {
-      VD cell = hn::Floor(p[axis]);
-      hn::StoreU(hn::DemoteTo(DFH(), hn::Sub(p[axis], cell)), DFH(), block.Fraction[axis] + i);
-      if (octave.Period[axis] > 0)
-      {
-        const VD period = hn::Set(DD(), static_cast<double>(octave.Period[axis]));
-        cell = hn::NegMulAdd(hn::Floor(hn::Div(cell, period)), period, cell);
-      }
-      HWY_ALIGN std::uint64_t bits[half];
-      const hn::ScalableTag<std::uint64_t> d64;
-      hn::Store(hn::BitCast(d64, hn::Add(cell, toInteger)), d64, bits);
-      for (std::size_t lane = 0; lane < half; ++lane)
-      {
-        block.Cell[axis][i + lane] = static_cast<std::uint32_t>(bits[lane]);
-      }
-    }
-  }
-}
 
 template <int N>
 EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<double>& positions,

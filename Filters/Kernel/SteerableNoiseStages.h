@@ -11,6 +11,7 @@
 #include "MetricTensor.h"
 #include "SteerableNoise.h"
 
+#include <cstring>
 #include <vector>
 
 namespace steerable
@@ -19,6 +20,21 @@ namespace steerable
 constexpr std::size_t BlockSize = 256;
 /// A block with one sample to either side, and room for a whole SIMD register behind.
 constexpr std::size_t BlockRoom = BlockSize + 2 + 32;
+
+/// Keeps the sign, the exponent and 16 leading bits of a float.
+constexpr std::uint32_t HighPartMask = 0xFFFFFF00u;
+
+/// What a number has beyond the high part of the nearest float.
+inline float LowPart(double value)
+{
+  const auto nearest = static_cast<float>(value);
+  std::uint32_t bits;
+  std::memcpy(&bits, &nearest, sizeof(bits));
+  bits &= HighPartMask;
+  float high;
+  std::memcpy(&high, &bits, sizeof(high));
+  return static_cast<float>(value - high);
+}
 
 /// One octave: everything that is constant over all samples.
 struct OctaveSetup
@@ -46,6 +62,9 @@ struct NoiseSetup
   bool Variant;
   /// Nothing but the 2^N corners of the cell and no sums: Rice's Quality 0.
   bool SingleCell;
+  /// 0: a sample belongs to the corner below it. 1/2: to the nearest one, from which its distance has a
+  /// float's full relative precision; normalisation would show less.
+  double CellRounding;
   /// Second axis in use (tensors and surfaces in 3D).
   bool Biaxial;
   bool Curved;
@@ -62,6 +81,8 @@ struct NoiseSetup
 struct MetricBlock
 {
   alignas(64) float U[3][BlockRoom];
+  /// u less its high part (2D), see LowPart.
+  alignas(64) float ULow[2][BlockRoom];
   alignas(64) float M[3][BlockRoom];
   alignas(64) float Along[BlockRoom];
   alignas(64) float Across[BlockRoom];

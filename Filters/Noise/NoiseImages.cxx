@@ -197,7 +197,8 @@ void Magnify(
 
 void CropToUpdateExtent(vtkDataSet* output, vtkInformation* outInfo)
 {
-  if (!outInfo->Has(SDDP::UPDATE_EXTENT()) || !outInfo->Get(SDDP::UPDATE_EXTENT_INITIALIZED()))
+  // A request for one piece of several leaves an older request for an extent standing.
+  if (!outInfo->Has(SDDP::UPDATE_EXTENT()) || outInfo->Get(SDDP::UPDATE_NUMBER_OF_PIECES()) > 1)
   {
     return;
   }

@@ -12,7 +12,6 @@
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
@@ -49,9 +48,9 @@ void WithThreads(Work&& work)
 }
 
 /**
- * Sums what `evaluate(begin, end)` returns over all parts. `samples` is their work, from which chunks
- * are sized so that what a chunk sets up does not count. One thread reports progress and asks whether
- * to abort; all of them stop then.
+ * Sums what `evaluate(begin, end)` returns over all parts, which hold `samples` together. They go to
+ * the threads in a few slices, between which this thread reports progress and asks whether to abort:
+ * observers of progress may be a user interface, which other threads must not touch.
  */
 template <typename Evaluate>
 auto ForEachPart(vtkAlgorithm* algorithm, std::size_t parts, vtkIdType samples,
@@ -62,36 +61,32 @@ auto ForEachPart(vtkAlgorithm* algorithm, std::size_t parts, vtkIdType samples,
   {
     return sum;
   }
+  // Slices and chunks large enough that what they set up does not count.
+  constexpr std::size_t samplesPerSlice = 1u << 19;
+  constexpr std::size_t samplesPerChunk = 1u << 15;
   const auto perPart = std::max<std::size_t>(1, static_cast<std::size_t>(samples) / parts);
-  const std::size_t grain =
-    std::max<std::size_t>(1, std::min((1u << 17) / perPart, parts / 16 + 1));
+  const std::size_t slice = std::max<std::size_t>(parts / 20 + 1, samplesPerSlice / perPart + 1);
+  const std::size_t grain = samplesPerChunk / perPart + 1;
   std::mutex mutex;
-  std::atomic<std::size_t> done(0);
-  WithThreads(
-    [&]
+  WithThreads([&] {
+    for (std::size_t first = 0; first < parts; first += slice)
     {
-      vtkSMPTools::For(0, static_cast<vtkIdType>(parts), static_cast<vtkIdType>(grain),
-        [&](vtkIdType begin, vtkIdType end)
-        {
-          // Some backends hand out larger ranges than the grain.
-          for (auto first = static_cast<std::size_t>(begin);
-               first < static_cast<std::size_t>(end) && !algorithm->GetAbortOutput();
-               first += grain)
-          {
-            if (vtkSMPTools::GetSingleThread())
-            {
-              algorithm->UpdateProgress(
-                progressStart + progressShare * static_cast<double>(done) / parts);
-              algorithm->CheckAbort();
-            }
-            const std::size_t last = std::min(first + grain, static_cast<std::size_t>(end));
-            const auto part = evaluate(first, last);
-            done += last - first;
-            const std::lock_guard<std::mutex> lock(mutex);
-            sum += part;
-          }
+      algorithm->UpdateProgress(
+        progressStart + progressShare * static_cast<double>(first) / static_cast<double>(parts));
+      if (algorithm->CheckAbort())
+      {
+        return;
+      }
+      const std::size_t last = std::min(first + slice, parts);
+      vtkSMPTools::For(static_cast<vtkIdType>(first), static_cast<vtkIdType>(last),
+        static_cast<vtkIdType>(grain), [&](vtkIdType begin, vtkIdType end) {
+          const auto part =
+            evaluate(static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+          const std::lock_guard<std::mutex> lock(mutex);
+          sum += part;
         });
-    });
+    }
+  });
   return sum;
 }
 } // namespace noise

@@ -174,6 +174,8 @@ struct vtkSteerableNoiseFilter::Internals
   steerable::EvaluationCounts Counts;
   vtkIdType Samples = 0;
   vtkIdType BlocksWithout = 0;
+  /// Why the last of them could not be used.
+  std::string Why;
 
   steerable::NoiseParameters GetParameters(double time) const
   {
@@ -211,6 +213,7 @@ struct vtkSteerableNoiseFilter::Internals
   /// Finds the array of a block; false with `why` where there is none that can be used.
   bool FindArray(Block& block, std::string& why) const
   {
+    why.clear();
     vtkInformation* info = this->Self->GetInputArrayInformation(0);
     const int association = info->Has(vtkDataObject::FIELD_ASSOCIATION())
       ? info->Get(vtkDataObject::FIELD_ASSOCIATION())
@@ -233,7 +236,8 @@ struct vtkSteerableNoiseFilter::Internals
         array->GetDataType() == VTK_UNSIGNED_CHAR)
       {
         why = "Array '" + std::string(array->GetName() ? array->GetName() : "") +
-          "' holds normals, texture coordinates or colours, not vectors. Choose another one, or copy "
+          "' holds normals, texture coordinates or colours, not vectors. Choose another one, or "
+          "copy "
           "it with the Calculator if it is meant.";
         continue;
       }
@@ -277,6 +281,10 @@ struct vtkSteerableNoiseFilter::Internals
       samples.GetNumberOfSamples(), progressStart, progressShare,
       [&](std::size_t begin, std::size_t end)
       { return samples.Evaluate(kernel, begin, end, values); });
+    if (this->Self->GetAbortOutput())
+    {
+      return; // half an array is none
+    }
     this->Samples += samples.GetNumberOfSamples();
     if (this->Counts.Degenerate > 0)
     {
@@ -314,7 +322,7 @@ struct vtkSteerableNoiseFilter::Internals
     {
       message << "\n"
               << this->BlocksWithout
-              << " block(s) have no usable array and were passed on without noise.";
+              << " block(s) have no usable array and were passed on without noise. " << this->Why;
     }
     const double spacing = extremes.GetSampleSpacing();
     const double finest =
@@ -446,19 +454,19 @@ int vtkSteerableNoiseFilter::RequestData(
 
   Internals internals{ this };
   std::vector<Block> blocks;
-  std::string why;
   bool failed = false;
   const auto addBlock = [&](vtkDataSet* dataset, bool required)
   {
     Block block{ dataset };
-    const bool empty = dataset->GetNumberOfPoints() == 0;
+    std::string why;
     if (internals.FindArray(block, why))
     {
       blocks.push_back(block);
     }
-    else if (!empty)
+    else if (dataset->GetNumberOfPoints() > 0)
     {
       failed = failed || required;
+      internals.Why = why;
       ++internals.BlocksWithout;
     }
   };
@@ -521,7 +529,7 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   if (failed)
   {
-    vtkErrorMacro(<< why);
+    vtkErrorMacro(<< internals.Why);
     return 0;
   }
   if (blocks.empty())

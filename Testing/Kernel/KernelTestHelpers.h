@@ -8,7 +8,12 @@
 #include "SteerableNoise.h"
 #include "SteerableNoiseReference.h"
 
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -136,19 +141,47 @@ std::vector<double> SlowNoise(
   return noise;
 }
 
+/// Largest |a - b|; a NaN stays.
+template <typename A, typename B>
+double LargestDifference(const std::vector<A>& a, const std::vector<B>& b)
+{
+  double largest = a.size() == b.size() ? 0.0 : std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+  {
+    const double difference = std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
+    largest = difference <= largest ? largest : difference;
+  }
+  return largest;
+}
+
 template <int N>
 double LargestDifference(
   const NoiseParameters& parameters, const RandomSamples& samples, Steering steering)
 {
-  const std::vector<float> fast = FastNoise<N>(parameters, samples, steering);
-  const std::vector<double> slow = SlowNoise<N>(parameters, samples, steering);
-  double largest = 0.0;
-  for (std::size_t i = 0; i < samples.Count; ++i)
+  return LargestDifference(
+    FastNoise<N>(parameters, samples, steering), SlowNoise<N>(parameters, samples, steering));
+}
+
+/**
+ * While it lives, Highway takes no better SIMD level than this one. Levels come from SimdLevels(),
+ * the best first.
+ */
+class SimdLevel
+{
+public:
+  explicit SimdLevel(std::int64_t target)
   {
-    const double difference = std::abs(fast[i] - slow[i]);
-    largest = difference <= largest ? largest : difference; // a NaN stays
+    // Better levels have lower bits. Worse ones stay: the kernel is not compiled for all of them.
+    hwy::SetSupportedTargetsForTest(hwy::SupportedTargets() & ~(target - 1));
   }
-  return largest;
+  ~SimdLevel() { hwy::SetSupportedTargetsForTest(0); }
+  SimdLevel(const SimdLevel&) = delete;
+  SimdLevel& operator=(const SimdLevel&) = delete;
+};
+
+inline std::vector<std::int64_t> SimdLevels()
+{
+  return hwy::SupportedAndGeneratedTargets();
 }
 
 /// Noise of an image whose vectors are a function of the world place of a sample.

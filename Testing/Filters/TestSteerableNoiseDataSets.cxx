@@ -1,0 +1,850 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/// vtkSteerableNoiseFilter on every type of dataset and composite, and on what is wrong with them.
+#include "FilterTestHelpers.h"
+
+#include "vtkAMRBox.h"
+#include "vtkAppendFilter.h"
+#include "vtkCellArray.h"
+#include "vtkCellType.h"
+#include "vtkDataSetTriangleFilter.h"
+#include "vtkExecutive.h"
+#include "vtkExplicitStructuredGrid.h"
+#include "vtkImageDataToPointSet.h"
+#include "vtkInformation.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNonOverlappingAMR.h"
+#include "vtkOverlappingAMR.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPlaneSource.h"
+#include "vtkPointSet.h"
+#include "vtkPolyData.h"
+#include "vtkRectilinearGrid.h"
+#include "vtkSphereSource.h"
+#include "vtkSteerableNoiseFilter.h"
+#include "vtkStringArray.h"
+#include "vtkStructuredGrid.h"
+#include "vtkTransform.h"
+#include "vtkTransformFilter.h"
+#include "vtkUniformGrid.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+using namespace filtertest;
+
+namespace
+{
+struct Result
+{
+  vtkSmartPointer<vtkDataObject> Output;
+  int Errors;
+  int Warnings;
+  std::string Text;
+};
+
+Result Apply(
+  vtkDataObject* input, const std::function<void(vtkSteerableNoiseFilter*)>& configure = {})
+{
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  auto pipeline = Listen(filter->GetExecutive());
+  filter->SetInputDataObject(input);
+  if (configure)
+  {
+    configure(filter);
+  }
+  filter->Update();
+  return { filter->GetOutputDataObject(0), messages->Errors + pipeline->Errors, messages->Warnings,
+    messages->Text };
+}
+
+/// The same box of 9 x 7 x 6 points as different dataset types.
+vtkSmartPointer<vtkImageData> Box(bool cells)
+{
+  return MakeImage(9, 7, 6, 1.0, cells);
+}
+
+template <typename FilterT>
+vtkSmartPointer<vtkDataSet> Through(vtkDataSet* input)
+{
+  vtkNew<FilterT> filter;
+  filter->SetInputData(input);
+  filter->Update();
+  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+vtkSmartPointer<vtkRectilinearGrid> Rectilinear(bool cells)
+{
+  auto grid = vtkSmartPointer<vtkRectilinearGrid>::New();
+  const int dims[3] = { 9, 7, 6 };
+  grid->SetDimensions(dims);
+  vtkSmartPointer<vtkDoubleArray> coordinates[3];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    coordinates[axis] = vtkSmartPointer<vtkDoubleArray>::New();
+    for (int i = 0; i < dims[axis]; ++i)
+    {
+      coordinates[axis]->InsertNextValue(i);
+    }
+  }
+  grid->SetXCoordinates(coordinates[0]);
+  grid->SetYCoordinates(coordinates[1]);
+  grid->SetZCoordinates(coordinates[2]);
+  AddFlow(grid, cells);
+  return grid;
+}
+
+vtkSmartPointer<vtkExplicitStructuredGrid> Explicit(bool cells)
+{
+  vtkSmartPointer<vtkDataSet> box = Through<vtkAppendFilter>(Box(cells)); // hexahedra
+  auto* unstructured = vtkUnstructuredGrid::SafeDownCast(box);
+  auto grid = vtkSmartPointer<vtkExplicitStructuredGrid>::New();
+  grid->SetDimensions(9, 7, 6);
+  grid->SetPoints(unstructured->GetPoints());
+  grid->SetCells(unstructured->GetCells());
+  grid->ComputeFacesConnectivityFlagsArray();
+  AddFlow(grid, cells);
+  return grid;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> Polyhedra()
+{
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (int i = 0; i < 16; ++i)
+  {
+    points->InsertNextPoint((i / 4) * 2.0, (i & 1) * 2.0, ((i >> 1) & 1) * 2.0);
+  }
+  grid->SetPoints(points);
+  for (vtkIdType base = 0; base < 12; base += 4)
+  {
+    const vtkIdType b = base;
+    const vtkIdType faces[] = { 4, b, b + 1, b + 3, b + 2, 4, b + 4, b + 5, b + 7, b + 6, 4, b,
+      b + 1, b + 5, b + 4, 4, b + 2, b + 3, b + 7, b + 6, 4, b, b + 2, b + 6, b + 4, 4, b + 1,
+      b + 3, b + 7, b + 5 };
+    grid->InsertNextCell(VTK_POLYHEDRON, 6, faces);
+  }
+  AddFlow(grid);
+  return grid;
+}
+
+double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
+{
+  double largest = a.size() == b.size() && !a.empty() ? 0.0 : 1e9;
+  for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
+  {
+    largest = std::max(largest, std::abs(double(a[i]) - b[i]));
+  }
+  return largest;
+}
+} // namespace
+
+TEST(SteerableNoiseDataSets, TheSamePlaceHasTheSameValueInEveryType)
+{
+  const auto still = [](vtkSteerableNoiseFilter* filter)
+  {
+    filter->SetFeatureSize(3.0);
+    filter->FollowCurvatureOff();
+  };
+  for (const bool cells : { false, true })
+  {
+    const std::vector<float> expected = Values(Apply(Box(cells), still).Output);
+    ASSERT_TRUE(AllFinite(expected));
+    const auto compare = [&](vtkDataSet* dataset, const char* what)
+    {
+      const Result result = Apply(dataset, still);
+      EXPECT_EQ(result.Errors, 0) << what << result.Text;
+      EXPECT_TRUE(result.Output->IsA(dataset->GetClassName())) << what;
+      // The image takes another path through the kernel: the last bits may differ.
+      EXPECT_LT(LargestDifference(Values(result.Output), expected), 5e-6) << what;
+    };
+    compare(Rectilinear(cells), "rectilinear");
+    compare(Through<vtkImageDataToPointSet>(Box(cells)), "curvilinear");
+    compare(Through<vtkAppendFilter>(Box(cells)), "hexahedra or voxels");
+    compare(Explicit(cells), "explicit structured");
+    if (!cells)
+    {
+      compare(Through<vtkDataSetTriangleFilter>(Box(false)), "tetrahedra");
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, CurvatureAgreesWithTheImages)
+{
+  // Central differences on the image, vtkGradientFilter on the others: the same inside, where both
+  // are of second order.
+  auto image = MakeImage(24, 22, 20);
+  const auto configure = [](vtkSteerableNoiseFilter* filter) { filter->SetFeatureSize(4.0); };
+  const std::vector<float> expected = Values(Apply(image, configure).Output);
+  const std::vector<float> result =
+    Values(Apply(Through<vtkImageDataToPointSet>(image), configure).Output);
+  ASSERT_EQ(result.size(), expected.size());
+  double largest = 0.0;
+  for (int k = 1; k < 19; ++k)
+  {
+    for (int j = 1; j < 21; ++j)
+    {
+      for (int i = 1; i < 23; ++i)
+      {
+        const int id = (k * 22 + j) * 24 + i;
+        largest = std::max(largest, std::abs(double(result[id]) - expected[id]));
+      }
+    }
+  }
+  EXPECT_LT(largest, 1e-3);
+}
+
+TEST(SteerableNoiseDataSets, PolyhedraAndMixedCells)
+{
+  EXPECT_TRUE(AllFinite(Values(Apply(Polyhedra()).Output)));
+  // A volume with a surface and a line beside it, all cell types in one grid.
+  vtkNew<vtkUnstructuredGrid> mixed;
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 16; ++i)
+  {
+    points->InsertNextPoint(i & 1, (i >> 1) & 1, ((i >> 2) & 1) + 5 * (i >> 3));
+  }
+  mixed->SetPoints(points);
+  const vtkIdType voxel[8] = { 0, 1, 2, 3, 4, 5, 6, 7 };
+  const vtkIdType quad[4] = { 8, 9, 11, 10 };
+  const vtkIdType line[2] = { 12, 13 };
+  const vtkIdType vertex[1] = { 14 };
+  mixed->InsertNextCell(VTK_VOXEL, 8, voxel);
+  mixed->InsertNextCell(VTK_QUAD, 4, quad);
+  mixed->InsertNextCell(VTK_LINE, 2, line);
+  mixed->InsertNextCell(VTK_VERTEX, 1, vertex);
+  AddFlow(mixed);
+  AddFlow(mixed, true, "cellFlow");
+  for (const char* name : { "velocity", "cellFlow" })
+  {
+    const Result result = Apply(mixed,
+      [&](vtkSteerableNoiseFilter* filter)
+      {
+        filter->SetInputArrayToProcess(
+          0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, name);
+        filter->OutputMetricOn();
+      });
+    EXPECT_TRUE(AllFinite(Values(result.Output))) << name;
+    // The quad's points have the metric of a surface: 0.5 along the normal, z; the voxel's have not.
+    auto* dataset = vtkDataSet::SafeDownCast(result.Output);
+    vtkDataArray* metric = dataset->GetPointData()->GetArray("Metric");
+    if (metric)
+    {
+      EXPECT_NEAR(metric->GetComponent(8, 2), 0.5, 1e-5);
+      EXPECT_GT(metric->GetComponent(0, 2), 0.6);
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, SurfacesTakeTheMetricOfTheirTangentPlane)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(24);
+  sphere->SetPhiResolution(24);
+  sphere->SetRadius(5.0);
+  sphere->Update();
+  vtkNew<vtkPolyData> surface;
+  surface->ShallowCopy(sphere->GetOutput());
+  surface->GetPointData()->Initialize(); // without normals: they are computed
+  AddFlow(surface);
+  const Result result = Apply(surface, [](vtkSteerableNoiseFilter* f) { f->OutputMetricOn(); });
+  EXPECT_EQ(result.Errors, 0);
+  auto* output = vtkDataSet::SafeDownCast(result.Output);
+  EXPECT_TRUE(AllFinite(Values(output)));
+  vtkDataArray* metric = output->GetPointData()->GetArray("Metric");
+  for (vtkIdType i = 2; i < output->GetNumberOfPoints(); ++i) // 0 and 1 are the poles
+  {
+    double p[3];
+    double m[6];
+    output->GetPoint(i, p);
+    metric->GetTuple(i, m);
+    const double n[3] = { p[0] / 5.0, p[1] / 5.0, p[2] / 5.0 };
+    const double along = m[0] * n[0] * n[0] + m[1] * n[1] * n[1] + m[2] * n[2] * n[2] +
+      2.0 * (m[3] * n[0] * n[1] + m[4] * n[1] * n[2] + m[5] * n[0] * n[2]);
+    EXPECT_NEAR(along, 0.5, 0.05) << "the normal is the second axis";
+  }
+  EXPECT_EQ(surface->GetPointData()->GetNumberOfArrays(), 1) << "the input was written";
+}
+
+TEST(SteerableNoiseDataSets, FlatSlabsOneCellThickAreSurfaces)
+{
+  for (const bool cells : { false, true })
+  {
+    auto image = MakeImage(20, 2, 18, 1.0, cells);
+    vtkSmartPointer<vtkDataSet> slab = Through<vtkImageDataToPointSet>(image);
+    const Result result = Apply(slab,
+      [](vtkSteerableNoiseFilter* f)
+      {
+        f->SetFeatureSize(4.0);
+        f->OutputMetricOn();
+      });
+    EXPECT_EQ(result.Errors, 0) << result.Text;
+    auto* output = vtkDataSet::SafeDownCast(result.Output);
+    vtkDataSetAttributes* attributes =
+      cells ? static_cast<vtkDataSetAttributes*>(output->GetCellData()) : output->GetPointData();
+    ASSERT_NE(attributes->GetArray("Metric"), nullptr);
+    for (vtkIdType i = 0; i < attributes->GetNumberOfTuples(); i += 7)
+    {
+      EXPECT_NEAR(attributes->GetArray("Metric")->GetComponent(i, 1), 0.5, 1e-5);
+    }
+    // As an image, cells one thick are a flat image.
+    EXPECT_TRUE(AllFinite(Values(Apply(image).Output)));
+  }
+}
+
+TEST(SteerableNoiseDataSets, AMRKeepsItsStructure)
+{
+  vtkNew<vtkOverlappingAMR> amr;
+  const int blocks[2] = { 1, 2 };
+  amr->Initialize(2, blocks);
+  const double origin[3] = { 0, 0, 0 };
+  amr->SetOrigin(origin);
+  amr->SetGridDescription(VTK_XYZ_GRID);
+  for (int level = 0; level < 2; ++level)
+  {
+    const double h = level == 0 ? 1.0 : 0.5;
+    const double spacing[3] = { h, h, h };
+    amr->SetSpacing(level, spacing);
+    for (int block = 0; block < blocks[level]; ++block)
+    {
+      vtkNew<vtkUniformGrid> grid;
+      grid->SetOrigin(block * 4.0, 0, 0);
+      grid->SetSpacing(spacing);
+      grid->SetDimensions(9, 9, 9);
+      AddFlow(grid, true);
+      const vtkAMRBox box(grid->GetOrigin(), grid->GetDimensions(), spacing, origin, VTK_XYZ_GRID);
+      amr->SetAMRBox(level, block, box);
+      amr->SetDataSet(level, block, grid);
+    }
+  }
+  const Result result = Apply(amr);
+  EXPECT_EQ(result.Errors, 0) << result.Text;
+  auto* output = vtkOverlappingAMR::SafeDownCast(result.Output);
+  ASSERT_NE(output, nullptr);
+  for (int level = 0; level < 2; ++level)
+  {
+    for (int block = 0; block < blocks[level]; ++block)
+    {
+      const std::vector<float> values = Values(output->GetDataSet(level, block));
+      EXPECT_EQ(values.size(), 512u);
+      EXPECT_TRUE(AllFinite(values));
+    }
+  }
+  EXPECT_EQ(amr->GetDataSet(0, 0)->GetCellData()->GetArray("SteerableNoise"), nullptr);
+}
+
+TEST(SteerableNoiseDataSets, CompositesWithPartialArrays)
+{
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  auto onPoints = MakeImage(8, 8, 8);
+  auto onCells = MakeImage(8, 8, 8, 1.0, true);
+  onCells->SetOrigin(7, 0, 0);
+  vtkNew<vtkImageData> without;
+  without->SetDimensions(4, 4, 4);
+  auto oneComponent = vtkSmartPointer<vtkImageData>::New();
+  oneComponent->SetDimensions(4, 4, 4);
+  AddFlow(oneComponent, false, "velocity", 1);
+  auto twoComponents = vtkSmartPointer<vtkImageData>::New();
+  twoComponents->SetDimensions(4, 4, 1);
+  AddFlow(twoComponents, false, "velocity", 2);
+  vtkNew<vtkPolyData> empty;
+  vtkNew<vtkMultiBlockDataSet> nested;
+  nested->SetBlock(0, twoComponents);
+  nested->SetBlock(1, nullptr);
+  blocks->SetBlock(0, onPoints);
+  blocks->SetBlock(1, onCells);
+  blocks->SetBlock(2, without);
+  blocks->SetBlock(3, nullptr);
+  blocks->SetBlock(4, oneComponent);
+  blocks->SetBlock(5, empty);
+  blocks->SetBlock(6, nested);
+  blocks->GetMetaData(1u)->Set(vtkCompositeDataSet::NAME(), "cells");
+  const Result result = Apply(blocks,
+    [](vtkSteerableNoiseFilter* filter) {
+      filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "velocity");
+    });
+  EXPECT_EQ(result.Errors, 0) << result.Text;
+  EXPECT_EQ(result.Warnings, 1) << result.Text;
+  EXPECT_NE(result.Text.find("2 block(s)"), std::string::npos) << result.Text;
+  EXPECT_NE(result.Text.find("1 component"), std::string::npos)
+    << "the reason is named: " << result.Text;
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(result.Output);
+  ASSERT_NE(output, nullptr);
+  ASSERT_EQ(output->GetNumberOfBlocks(), 7u);
+  EXPECT_EQ(Values(output->GetBlock(0)).size(), 512u);
+  EXPECT_EQ(Values(output->GetBlock(1)).size(), 343u) << "an array on the other association serves";
+  EXPECT_TRUE(Values(output->GetBlock(2)).empty());
+  EXPECT_EQ(output->GetBlock(3), nullptr);
+  EXPECT_TRUE(Values(output->GetBlock(4)).empty());
+  EXPECT_NE(output->GetBlock(5), nullptr);
+  auto* inner = vtkMultiBlockDataSet::SafeDownCast(output->GetBlock(6));
+  ASSERT_NE(inner, nullptr);
+  EXPECT_EQ(Values(inner->GetBlock(0)).size(), 16u);
+  EXPECT_STREQ(output->GetMetaData(1u)->Get(vtkCompositeDataSet::NAME()), "cells");
+}
+
+TEST(SteerableNoiseDataSets, OneFeatureSizeForAllBlocks)
+{
+  vtkNew<vtkPartitionedDataSetCollection> collection;
+  vtkNew<vtkPartitionedDataSet> partitions;
+  auto left = MakeImage(60, 50, 1);
+  auto right = MakeImage(60, 50, 1);
+  right->SetOrigin(500, 0, 0);
+  AddFlow(right);
+  partitions->SetPartition(0, left);
+  partitions->SetPartition(1, right);
+  collection->SetPartitionedDataSet(0, partitions);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputDataObject(collection);
+  filter->Update();
+  EXPECT_NEAR(filter->GetResolvedFeatureSize(), 0.01 * std::hypot(559, 49), 1e-9);
+  auto* output = vtkPartitionedDataSetCollection::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_NE(output, nullptr);
+  EXPECT_EQ(Values(output->GetPartition(0, 1)).size(), 3000u);
+}
+
+TEST(SteerableNoiseDataSets, SamplesTooFarApartAreNamedWithNumbersAndRemedy)
+{
+  const Result coarse =
+    Apply(MakeImage(20, 20, 1), [](vtkSteerableNoiseFilter* f) { f->SetFeatureSize(2.0); });
+  EXPECT_EQ(coarse.Warnings, 1);
+  EXPECT_NE(coarse.Text.find("1 apart"), std::string::npos) << coarse.Text;
+  EXPECT_NE(coarse.Text.find("FeatureSize to at least 4"), std::string::npos) << coarse.Text;
+  const Result fine =
+    Apply(MakeImage(20, 20, 1), [](vtkSteerableNoiseFilter* f) { f->SetFeatureSize(4.0); });
+  EXPECT_EQ(fine.Warnings, 0) << fine.Text;
+}
+
+TEST(SteerableNoiseDataSets, NormalsTextureCoordinatesAndColoursAreNeverTaken)
+{
+  vtkNew<vtkSphereSource> sphere; // has Normals and nothing else
+  sphere->Update();
+  const Result alone = Apply(sphere->GetOutput());
+  EXPECT_EQ(alone.Errors > 0, true) << "normals were taken for a flow";
+  vtkNew<vtkPolyData> colored;
+  colored->ShallowCopy(sphere->GetOutput());
+  vtkNew<vtkUnsignedCharArray> rgb;
+  rgb->SetName("rgb");
+  rgb->SetNumberOfComponents(3);
+  rgb->SetNumberOfTuples(colored->GetNumberOfPoints());
+  rgb->Fill(7);
+  colored->GetPointData()->AddArray(rgb);
+  EXPECT_GT(Apply(colored).Errors, 0);
+  for (const char* name : { "Normals", "rgb" })
+  {
+    const Result chosen = Apply(colored,
+      [&](vtkSteerableNoiseFilter* filter)
+      { filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name); });
+    EXPECT_GT(chosen.Errors, 0) << name;
+    EXPECT_NE(chosen.Text.find(name), std::string::npos) << chosen.Text;
+  }
+}
+
+// ---- bad input ------------------------------------------------------------------------------------
+
+namespace
+{
+enum Expected
+{
+  Fine,    // finite noise, no error
+  Warned,  // finite noise and one warning
+  Failed,  // a clear error
+  PassedOn // no error, no noise, input kept
+};
+
+struct Case
+{
+  std::string Name;
+  std::function<vtkSmartPointer<vtkDataObject>()> Make;
+  std::function<void(vtkSteerableNoiseFilter*)> Configure;
+  Expected Outcome;
+};
+
+void PrintTo(const Case& c, std::ostream* os)
+{
+  *os << c.Name;
+}
+
+vtkSmartPointer<vtkImageData> WithArray(int components, const char* name = "velocity")
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(12, 10, 8);
+  AddFlow(image, false, name, components);
+  return image;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> Cells(int type, const std::vector<double>& coordinates)
+{
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  std::vector<vtkIdType> ids;
+  for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3)
+  {
+    ids.push_back(points->InsertNextPoint(coordinates.data() + i));
+  }
+  grid->SetPoints(points);
+  if (!ids.empty())
+  {
+    grid->InsertNextCell(type, static_cast<vtkIdType>(ids.size()), ids.data());
+  }
+  AddFlow(grid);
+  return grid;
+}
+
+std::vector<Case> BadInput()
+{
+  using F = vtkSteerableNoiseFilter*;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  const auto image = [] { return vtkSmartPointer<vtkDataObject>(MakeImage(12, 10, 8)); };
+  const auto named = [](const char* name)
+  {
+    return [name](F f) {
+      f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, name);
+    };
+  };
+  std::vector<Case> cases;
+  const auto add = [&](const std::string& name,
+                     std::function<vtkSmartPointer<vtkDataObject>()> make, Expected outcome,
+                     std::function<void(F)> configure = {}) {
+    cases.push_back({ name, std::move(make), std::move(configure), outcome });
+  };
+
+  // Each property out of its range is clamped, and the noise stays finite.
+  const std::pair<const char*, std::function<void(F)>> clamped[] = {
+    { "FeatureSizeNegative", [](F f) { f->SetFeatureSize(-1.0); } },
+    { "QualityNegative", [](F f) { f->SetQuality(-3); } },
+    { "QualityHuge", [](F f) { f->SetQuality(1000); } },
+    { "MinimumEigenvalueZero", [](F f) { f->SetMinimumEigenvalue(0.0); } },
+    { "MinimumEigenvalueHuge", [](F f) { f->SetMinimumEigenvalue(9.0); } },
+    { "EigenvalueSumSmall", [](F f) { f->SetEigenvalueSum(0.0); } },
+    { "EigenvalueSumHuge", [](F f) { f->SetEigenvalueSum(1e9); } },
+    { "StrengthNegative", [](F f) { f->SetStrength(-1.0); } },
+    { "StrengthHuge", [](F f) { f->SetStrength(7.0); } },
+    { "StrengthModeWild", [](F f) { f->SetStrengthMode(99); } },
+    { "ReferenceMagnitudeNegative",
+      [](F f)
+      {
+        f->SetStrengthMode(1);
+        f->SetReferenceMagnitude(-2.0);
+      } },
+    { "NormalizationWild", [](F f) { f->SetNormalization(-5); } },
+    { "BasisWild", [](F f) { f->SetBasis(99); } },
+    { "DensityZero",
+      [](F f)
+      {
+        f->SetBasis(2);
+        f->SetDensity(0.0);
+      } },
+    { "PhaseHuge", [](F f) { f->SetPhase(1e18); } },
+    { "PhaseNegative", [](F f) { f->SetPhase(-12.3); } },
+    { "PhaseNaN", [=](F f) { f->SetPhase(nan); } },
+    { "SpeedHuge",
+      [](F f)
+      {
+        f->SetPhase(0.3);
+        f->SetSpeed(1e9);
+      } },
+    { "TimePeriodNegative", [](F f) { f->SetTimePeriod(-1.0); } },
+    { "OctavesZero", [](F f) { f->SetOctaves(0); } },
+    { "LacunarityZero", [](F f) { f->SetLacunarity(0.0); } },
+    { "GainHuge", [](F f) { f->SetGain(100.0); } },
+    { "FadeWild", [](F f) { f->SetFade(12); } },
+    { "FalloffWild", [](F f) { f->SetFalloff(-1); } },
+    { "LatticeWild", [](F f) { f->SetLattice(77); } },
+    { "GradientSetWild", [](F f) { f->SetGradientSet(77); } },
+    { "MagnificationZero", [](F f) { f->SetMagnification(0); } },
+    { "MaskThresholdNegative", [](F f) { f->SetMaskThreshold(-1.0); } },
+    { "SeedNegative", [](F f) { f->SetSeed(-2147483647); } },
+    { "PeriodOne", [](F f) { f->SetPeriod(1, 1, 1); } },
+    { "FeatureSizeLargerThanTheData", [](F f) { f->SetFeatureSize(1e12); } },
+  };
+  for (const auto& entry : clamped)
+  {
+    add(entry.first, image, Fine, entry.second);
+  }
+  add("FeatureSizeTiny", image, Warned, [](F f) { f->SetFeatureSize(1e-9); });
+  add("OctavesHuge", image, Warned, [](F f) { f->SetOctaves(1000); });
+  add("PeriodNegative", image, Failed, [](F f) { f->SetPeriod(-3, 0, 0); });
+  add("PeriodHuge", image, Failed, [](F f) { f->SetPeriod(2147483647, 2147483647, 2147483647); });
+  add("PeriodSimplicial", image, Failed,
+    [](F f)
+    {
+      f->SetPeriod(3, 0, 0);
+      f->SetLattice(2);
+    });
+  add("PeriodFractionalLacunarity", image, Failed,
+    [](F f)
+    {
+      f->SetPeriod(3, 0, 0);
+      f->SetOctaves(2);
+      f->SetLacunarity(2.5);
+    });
+  add("WeightSumWithLargeTrace", image, Failed,
+    [](F f)
+    {
+      f->SetNormalization(1);
+      f->SetEigenvalueSum(6.0);
+    });
+  add("NoResultName", image, Failed, [](F f) { f->SetResultArrayName(nullptr); });
+  add("EmptyResultName", image, Failed, [](F f) { f->SetResultArrayName(""); });
+
+  // Each array wrong.
+  add("MissingArray", image, Failed, named("nothing"));
+  for (const int components : { 1, 5, 7, 8, 10 })
+  {
+    add(
+      std::to_string(components) + "Components",
+      [=] { return vtkSmartPointer<vtkDataObject>(WithArray(components)); }, Failed,
+      named("velocity"));
+  }
+  for (const int components : { 2, 4, 6, 9 })
+  {
+    add(
+      std::to_string(components) + "Components",
+      [=] { return vtkSmartPointer<vtkDataObject>(WithArray(components)); }, Fine,
+      named("velocity"));
+  }
+  add(
+    "NoArrays",
+    []
+    {
+      auto bare = vtkSmartPointer<vtkImageData>::New();
+      bare->SetDimensions(5, 5, 5);
+      return vtkSmartPointer<vtkDataObject>(bare);
+    },
+    Failed);
+  add(
+    "StringArray",
+    []
+    {
+      auto bare = vtkSmartPointer<vtkImageData>::New();
+      bare->SetDimensions(2, 1, 1);
+      vtkNew<vtkStringArray> strings;
+      strings->SetName("text");
+      strings->SetNumberOfComponents(3);
+      strings->SetNumberOfTuples(2);
+      bare->GetPointData()->AddArray(strings);
+      return vtkSmartPointer<vtkDataObject>(bare);
+    },
+    Failed, named("text"));
+  const auto filled = [](double value)
+  {
+    return [value]
+    {
+      auto data = MakeImage(12, 10, 8);
+      data->GetPointData()->GetVectors()->Fill(value);
+      return vtkSmartPointer<vtkDataObject>(data);
+    };
+  };
+  add("AllZero", filled(0.0), Warned);
+  add("AllNaN", filled(nan), Warned);
+  add("AllInfinite", filled(inf), Warned);
+  add("Denormal", filled(1e-42), Fine);
+  add("AllZeroByMagnitude", filled(0.0), Warned, [](F f) { f->SetStrengthMode(1); });
+  add(
+    "NaNTensors",
+    [=]
+    {
+      auto data = WithArray(6);
+      data->GetPointData()->GetArray(0)->Fill(nan);
+      return vtkSmartPointer<vtkDataObject>(data);
+    },
+    Warned, named("velocity"));
+  add(
+    "ArrayNamedWithSpaces", [] { return vtkSmartPointer<vtkDataObject>(WithArray(3, "a b, c")); },
+    Fine, named("a b, c"));
+  add("ResultNameOfTheInput", image, Fine, [](F f) { f->SetResultArrayName("SteerableNoise"); });
+
+  // Each geometry degenerate.
+  const auto sized = [](int nx, int ny, int nz)
+  { return [=] { return vtkSmartPointer<vtkDataObject>(MakeImage(nx, ny, nz)); }; };
+  add(
+    "EmptyImage",
+    [] { return vtkSmartPointer<vtkDataObject>(vtkSmartPointer<vtkImageData>::New()); }, PassedOn);
+  add(
+    "EmptyPolyData",
+    [] { return vtkSmartPointer<vtkDataObject>(vtkSmartPointer<vtkPolyData>::New()); }, PassedOn);
+  add(
+    "EmptyUnstructured",
+    [] { return vtkSmartPointer<vtkDataObject>(vtkSmartPointer<vtkUnstructuredGrid>::New()); },
+    PassedOn);
+  add(
+    "EmptyMultiBlock",
+    [] { return vtkSmartPointer<vtkDataObject>(vtkSmartPointer<vtkMultiBlockDataSet>::New()); },
+    PassedOn);
+  add("OnePoint", sized(1, 1, 1), Fine);
+  add("TwoPoints", sized(2, 1, 1), Fine);
+  add("LineAlongY", sized(1, 50, 1), Fine);
+  add("LineAlongZ", sized(1, 1, 50), Fine);
+  add("TwoByTwoByTwo", sized(2, 2, 2), Fine);
+  add(
+    "TinySpacing", [] { return vtkSmartPointer<vtkDataObject>(MakeImage(12, 10, 8, 1e-200)); },
+    Fine);
+  add(
+    "HugeSpacing", [] { return vtkSmartPointer<vtkDataObject>(MakeImage(12, 10, 8, 1e200)); },
+    Fine);
+  add(
+    "HugeOrigin",
+    []
+    {
+      auto data = MakeImage(12, 10, 8);
+      data->SetOrigin(1e15, -1e15, 1e15);
+      return vtkSmartPointer<vtkDataObject>(data);
+    },
+    Fine);
+  add(
+    "NaNOrigin",
+    [=]
+    {
+      auto data = MakeImage(12, 10, 8);
+      data->SetOrigin(nan, 0, 0);
+      return vtkSmartPointer<vtkDataObject>(data);
+    },
+    Failed);
+  add(
+    "NaNPoint",
+    [=]
+    {
+      return vtkSmartPointer<vtkDataObject>(
+        Cells(VTK_TETRA, { 0, 0, 0, 1, 0, 0, 0, 1, 0, nan, 0, 1 }));
+    },
+    Warned);
+  add(
+    "InfinitePoint",
+    [=]
+    {
+      return vtkSmartPointer<vtkDataObject>(
+        Cells(VTK_TETRA, { 0, 0, 0, 1, 0, 0, 0, 1, 0, inf, 0, 1 }));
+    },
+    Warned);
+  add(
+    "FlatTetrahedron",
+    []
+    {
+      return vtkSmartPointer<vtkDataObject>(
+        Cells(VTK_TETRA, { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0 }));
+    },
+    Fine);
+  add(
+    "DegenerateTriangle",
+    [] {
+      return vtkSmartPointer<vtkDataObject>(Cells(VTK_TRIANGLE, { 0, 0, 0, 1, 0, 0, 2, 0, 0 }));
+    },
+    Fine);
+  add(
+    "CoincidentPoints",
+    []
+    {
+      return vtkSmartPointer<vtkDataObject>(
+        Cells(VTK_TETRA, { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 }));
+    },
+    Fine);
+  add(
+    "OnlyVertices",
+    [] {
+      return vtkSmartPointer<vtkDataObject>(Cells(VTK_POLY_VERTEX, { 0, 0, 0, 1, 2, 3, 4, 5, 6 }));
+    },
+    Fine);
+  add(
+    "OnlyLines",
+    [] {
+      return vtkSmartPointer<vtkDataObject>(Cells(VTK_POLY_LINE, { 0, 0, 0, 1, 2, 3, 4, 5, 6 }));
+    },
+    Fine);
+  add(
+    "PointsWithoutCells",
+    []
+    {
+      vtkNew<vtkPoints> points;
+      points->InsertNextPoint(1, 2, 3);
+      points->InsertNextPoint(2, 2, 3);
+      auto data = vtkSmartPointer<vtkPolyData>::New();
+      data->SetPoints(points);
+      AddFlow(data);
+      return vtkSmartPointer<vtkDataObject>(data);
+    },
+    Fine);
+  add(
+    "VectorAlongTheNormal",
+    []
+    {
+      vtkNew<vtkPlaneSource> plane;
+      plane->SetResolution(5, 5);
+      plane->Update();
+      auto data = vtkSmartPointer<vtkPolyData>::New();
+      data->ShallowCopy(plane->GetOutput());
+      vtkNew<vtkFloatArray> v;
+      v->SetName("v");
+      v->SetNumberOfComponents(3);
+      for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i)
+      {
+        v->InsertNextTuple3(0, 0, 1);
+      }
+      data->GetPointData()->SetVectors(v);
+      return vtkSmartPointer<vtkDataObject>(data);
+    },
+    Warned);
+  return cases;
+}
+
+class SteerableNoiseBadInput : public testing::TestWithParam<Case>
+{
+};
+} // namespace
+
+TEST_P(SteerableNoiseBadInput, GivesWhatItsCaseSays)
+{
+  const Case& c = GetParam();
+  auto input = c.Make();
+  const Result result = Apply(input, c.Configure);
+  const std::vector<float> values = Values(result.Output);
+  switch (c.Outcome)
+  {
+    case Fine:
+      EXPECT_EQ(result.Errors, 0) << result.Text;
+      EXPECT_TRUE(AllFinite(values));
+      break;
+    case Warned:
+      EXPECT_EQ(result.Errors, 0) << result.Text;
+      EXPECT_EQ(result.Warnings, 1) << result.Text;
+      EXPECT_TRUE(AllFinite(values));
+      break;
+    case Failed:
+      EXPECT_GT(result.Errors, 0);
+      EXPECT_GT(result.Text.size(), 20u) << "the error says what to do";
+      EXPECT_TRUE(values.empty());
+      break;
+    case PassedOn:
+      EXPECT_EQ(result.Errors, 0) << result.Text;
+      EXPECT_TRUE(values.empty());
+      EXPECT_TRUE(result.Output->IsA(input->GetClassName()));
+      break;
+  }
+  // Nothing is lost: arrays of the input are still in the output.
+  auto* before = vtkDataSet::SafeDownCast(input);
+  auto* after = vtkDataSet::SafeDownCast(result.Output);
+  if (before && after && c.Outcome != Failed)
+  {
+    for (int i = 0; i < before->GetPointData()->GetNumberOfArrays(); ++i)
+    {
+      EXPECT_NE(
+        after->GetPointData()->GetAbstractArray(before->GetPointData()->GetArrayName(i)), nullptr);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, SteerableNoiseBadInput, testing::ValuesIn(BadInput()),
+  [](const testing::TestParamInfo<Case>& info) { return info.param.Name; });
+
+TEST(SteerableNoiseBadInput, TheTableHasSixtyCases)
+{
+  EXPECT_GE(BadInput().size(), 60u);
+}

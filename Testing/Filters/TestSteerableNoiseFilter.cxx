@@ -1,0 +1,655 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/// vtkSteerableNoiseFilter on images: arrays, planes, pieces, threads, time, options.
+#include "FilterTestHelpers.h"
+
+#include "vtkAlgorithmOutput.h"
+#include "vtkArrayCalculator.h"
+#include "vtkCallbackCommand.h"
+#include "vtkInformation.h"
+#include "vtkIntArray.h"
+#include "vtkMatrix3x3.h"
+#include "vtkRTAnalyticSource.h"
+#include "vtkSMPTools.h"
+#include "vtkSOADataArrayTemplate.h"
+#include "vtkSteerableNoiseFilter.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkTrivialProducer.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+using namespace filtertest;
+
+namespace
+{
+std::vector<float> Noise(vtkDataSet* input, double featureSize = 5.0,
+  const std::function<void(vtkSteerableNoiseFilter*)>& configure = {})
+{
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(input);
+  filter->SetFeatureSize(featureSize);
+  if (configure)
+  {
+    configure(filter);
+  }
+  filter->Update();
+  return Values(filter->GetOutputDataObject(0));
+}
+} // namespace
+
+TEST(SteerableNoiseFilter, AddsOneActiveFloatArrayAndPassesTheRest)
+{
+  auto image = MakeImage(20, 15, 12);
+  AddFlow<vtkDoubleArray>(image, true, "other");
+  vtkNew<vtkIntArray> field;
+  field->SetName("note");
+  field->InsertNextValue(7);
+  image->GetFieldData()->AddArray(field);
+  const vtkMTimeType before = image->GetMTime();
+
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(image);
+  filter->Update();
+  auto* output = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_NE(output, nullptr);
+  EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
+  auto* noise = vtkFloatArray::SafeDownCast(output->GetPointData()->GetScalars());
+  ASSERT_NE(noise, nullptr);
+  EXPECT_STREQ(noise->GetName(), "SteerableNoise");
+  EXPECT_EQ(noise->GetNumberOfTuples(), image->GetNumberOfPoints());
+  EXPECT_NE(output->GetPointData()->GetArray("velocity"), nullptr);
+  EXPECT_NE(output->GetCellData()->GetArray("other"), nullptr);
+  EXPECT_NE(output->GetFieldData()->GetArray("note"), nullptr);
+  EXPECT_STREQ(output->GetPointData()->GetVectors()->GetName(), "velocity");
+  // The input is never written.
+  EXPECT_EQ(image->GetPointData()->GetArray("SteerableNoise"), nullptr);
+  EXPECT_EQ(image->GetMTime(), before);
+}
+
+TEST(SteerableNoiseFilter, EveryArrayLayoutGivesTheSameNoise)
+{
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(33, 17, 1);
+  auto floats = AddFlow<vtkFloatArray>(image);
+  const std::vector<float> expected = Noise(image);
+  ASSERT_TRUE(AllFinite(expected));
+
+  const auto with = [&](vtkDataArray* array)
+  {
+    vtkNew<vtkImageData> other;
+    other->SetDimensions(33, 17, 1);
+    other->GetPointData()->SetVectors(array->GetNumberOfComponents() == 3 ? array : nullptr);
+    array->SetName("velocity");
+    other->GetPointData()->AddArray(array);
+    return Noise(other, 5.0,
+      [](vtkSteerableNoiseFilter* filter) {
+        filter->SetInputArrayToProcess(
+          0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "velocity");
+      });
+  };
+  vtkNew<vtkDoubleArray> doubles;
+  doubles->DeepCopy(floats);
+  EXPECT_EQ(with(doubles), expected);
+  vtkNew<vtkSOADataArrayTemplate<float>> soa;
+  soa->DeepCopy(floats);
+  EXPECT_EQ(with(soa), expected);
+  vtkNew<vtkFloatArray> two;
+  two->SetNumberOfComponents(2);
+  for (vtkIdType i = 0; i < floats->GetNumberOfTuples(); ++i)
+  {
+    two->InsertNextTuple2(floats->GetComponent(i, 0), floats->GetComponent(i, 1));
+  }
+  EXPECT_EQ(with(two), expected);
+  // Whole numbers steer as well.
+  vtkNew<vtkIntArray> whole;
+  whole->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < floats->GetNumberOfTuples(); ++i)
+  {
+    whole->InsertNextTuple3(3, 2, 0);
+  }
+  EXPECT_TRUE(AllFinite(with(whole)));
+}
+
+TEST(SteerableNoiseFilter, FlatImagesGiveTheSameNoiseInEveryPlane)
+{
+  // The same in-plane field in the xy, yz and zx planes.
+  std::vector<std::vector<float>> results;
+  for (int flat = 0; flat < 3; ++flat)
+  {
+    const int a = flat == 0 ? 1 : 0;
+    const int b = flat == 2 ? 1 : 2;
+    int dims[3] = { 1, 1, 1 };
+    dims[a] = 24;
+    dims[b] = 18;
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(dims);
+    vtkNew<vtkFloatArray> vectors;
+    vectors->SetName("v");
+    vectors->SetNumberOfComponents(3);
+    for (int j = 0; j < 18; ++j)
+    {
+      for (int i = 0; i < 24; ++i)
+      {
+        double v[3] = { 0.0, 0.0, 0.0 };
+        v[a] = 1.0 + 0.1 * j;
+        v[b] = std::sin(0.3 * i);
+        v[flat] = 5.0; // does not matter in the plane
+        vectors->InsertNextTuple(v);
+      }
+    }
+    image->GetPointData()->SetVectors(vectors);
+    results.push_back(Noise(image));
+  }
+  EXPECT_EQ(results[0], results[2]);
+  EXPECT_EQ(results[1], results[2]);
+  EXPECT_TRUE(AllFinite(results[0]));
+}
+
+TEST(SteerableNoiseFilter, TurnedImageTakesItsLatticeAlong)
+{
+  // Turned by 90 degrees about z with its vectors: the same values.
+  auto image = MakeImage(20, 14, 1);
+  const std::vector<float> expected = Noise(image);
+  vtkNew<vtkImageData> turned;
+  turned->CopyStructure(image);
+  turned->SetDirectionMatrix(0, -1, 0, 1, 0, 0, 0, 0, 1);
+  vtkDataArray* flow = image->GetPointData()->GetVectors();
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName("velocity");
+  vectors->SetNumberOfComponents(3);
+  for (vtkIdType i = 0; i < flow->GetNumberOfTuples(); ++i)
+  {
+    const double* v = flow->GetTuple(i);
+    vectors->InsertNextTuple3(-v[1], v[0], v[2]);
+  }
+  turned->GetPointData()->SetVectors(vectors);
+  const std::vector<float> result = Noise(turned);
+  ASSERT_EQ(result.size(), expected.size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+  {
+    EXPECT_NEAR(result[i], expected[i], 1e-5);
+  }
+}
+
+TEST(SteerableNoiseFilter, CellsAreEvaluatedAtTheirCentres)
+{
+  // Cells of one image and points of another in the same places.
+  auto cells = MakeImage(21, 16, 1, 1.0, true);
+  vtkNew<vtkImageData> points;
+  points->SetDimensions(20, 15, 1);
+  points->SetOrigin(0.5, 0.5, 0.0);
+  vtkNew<vtkFloatArray> copy;
+  copy->DeepCopy(cells->GetCellData()->GetVectors());
+  points->GetPointData()->SetVectors(copy);
+  const std::vector<float> fromCells = Noise(cells);
+  EXPECT_EQ(fromCells.size(), 300u);
+  EXPECT_EQ(fromCells, Noise(points));
+}
+
+namespace
+{
+/// A pipeline whose source makes just what is asked for; its vectors are a function of place alone.
+struct Pipeline
+{
+  explicit Pipeline(bool flat)
+  {
+    this->Source->SetWholeExtent(-20, 21, -15, 17, flat ? 0 : -10, flat ? 0 : 12);
+    this->Calculator->SetInputConnection(this->Source->GetOutputPort());
+    this->Calculator->AddCoordinateScalarVariable("x", 0);
+    this->Calculator->AddCoordinateScalarVariable("y", 1);
+    this->Calculator->AddCoordinateScalarVariable("z", 2);
+    this->Calculator->SetFunction("(1.3+sin(0.3*y))*iHat+cos(0.2*x)*jHat+sin(0.25*z-0.1*x)*kHat");
+    this->Calculator->SetResultArrayName("flow");
+    this->Filter->SetInputConnection(this->Calculator->GetOutputPort());
+    this->Filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "flow");
+    this->Filter->SetFeatureSize(4.0);
+  }
+  vtkImageData* GetOutput()
+  {
+    return vtkImageData::SafeDownCast(this->Filter->GetOutputDataObject(0));
+  }
+
+  vtkNew<vtkRTAnalyticSource> Source;
+  vtkNew<vtkArrayCalculator> Calculator;
+  vtkNew<vtkSteerableNoiseFilter> Filter;
+};
+
+/// Samples of a part, ghosts left out, that differ from the whole in any bit; -1: a sample is missing.
+vtkIdType CountDifferences(vtkImageData* part, vtkImageData* whole, vtkIdType& compared)
+{
+  const std::vector<float> all = Values(whole);
+  const std::vector<float> some = Values(part);
+  vtkDataArray* ghosts = part->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName());
+  vtkIdType differences = 0;
+  for (vtkIdType id = 0; id < part->GetNumberOfPoints(); ++id)
+  {
+    if (ghosts && ghosts->GetComponent(id, 0) != 0)
+    {
+      continue;
+    }
+    const vtkIdType other = whole->FindPoint(part->GetPoint(id));
+    if (other < 0)
+    {
+      return -1;
+    }
+    differences += std::memcmp(&some[id], &all[other], sizeof(float)) != 0;
+    ++compared;
+  }
+  return differences;
+}
+} // namespace
+
+TEST(SteerableNoiseFilter, StreamedInSevenPiecesGivesTheSameBits)
+{
+  for (const bool flat : { false, true })
+  {
+    Pipeline all(flat);
+    all.Filter->Update();
+    vtkImageData* whole = all.GetOutput();
+    int wholeExtent[6];
+    whole->GetExtent(wholeExtent);
+
+    // Seven slabs through explicit extents, no larger than asked for.
+    vtkIdType compared = 0;
+    for (int piece = 0; piece < 7; ++piece)
+    {
+      int extent[6];
+      std::copy_n(wholeExtent, 6, extent);
+      const int axis = flat ? 1 : 2;
+      const int count = wholeExtent[2 * axis + 1] - wholeExtent[2 * axis] + 1;
+      extent[2 * axis] = wholeExtent[2 * axis] + piece * count / 7;
+      extent[2 * axis + 1] = wholeExtent[2 * axis] + (piece + 1) * count / 7 - 1;
+      Pipeline part(flat);
+      part.Filter->UpdateExtent(extent);
+      EXPECT_TRUE(std::equal(extent, extent + 6, part.GetOutput()->GetExtent())) << piece;
+      EXPECT_EQ(CountDifferences(part.GetOutput(), whole, compared), 0) << "extent " << piece;
+    }
+    EXPECT_EQ(compared, whole->GetNumberOfPoints());
+
+    // And through VTK's piece requests.
+    compared = 0;
+    for (int piece = 0; piece < 7; ++piece)
+    {
+      Pipeline part(flat);
+      part.Filter->UpdatePiece(piece, 7, 0);
+      EXPECT_EQ(CountDifferences(part.GetOutput(), whole, compared), 0) << "piece " << piece;
+    }
+    EXPECT_GE(compared, whole->GetNumberOfPoints());
+  }
+}
+
+TEST(SteerableNoiseFilter, ThreadsGiveTheSameBits)
+{
+  auto image = MakeImage(70, 60, 30);
+  std::vector<std::vector<float>> results;
+  for (const int threads : { 1, 2, 3 })
+  {
+    vtkSMPTools::LocalScope(
+      vtkSMPTools::Config{ threads, "STDThread", false }, [&] { results.push_back(Noise(image)); });
+  }
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+TEST(SteerableNoiseFilter, FeatureSizeZeroIsAHundredthOfTheDiagonalOrFourSpacings)
+{
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(MakeImage(400, 300, 1, 0.1));
+  filter->Update();
+  EXPECT_NEAR(filter->GetResolvedFeatureSize(), 0.01 * std::hypot(39.9, 29.9), 1e-9);
+  filter->SetInputData(MakeImage(40, 30, 1, 0.1));
+  filter->Update();
+  EXPECT_NEAR(filter->GetResolvedFeatureSize(), 0.4, 1e-9);
+}
+
+TEST(SteerableNoiseFilter, VectorsWithoutDirectionGiveOneCountedWarning)
+{
+  auto image = MakeImage(40, 30, 1);
+  vtkDataArray* v = image->GetPointData()->GetVectors();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  v->SetTuple3(3, 0, 0, 0);
+  v->SetTuple3(100, nan, 1, 0);
+  v->SetTuple3(200, 1, inf, 0);
+  v->SetTuple3(201, 0, -inf, 0);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(image);
+  filter->Update();
+  EXPECT_TRUE(AllFinite(Values(filter->GetOutputDataObject(0))));
+  EXPECT_EQ(messages->Warnings, 1);
+  EXPECT_NE(messages->Text.find("4 of 1200"), std::string::npos) << messages->Text;
+  EXPECT_EQ(filter->GetNumberOfDegenerateSamples(), 4);
+
+  // Ghosts are evaluated and not counted.
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(1200);
+  ghosts->Fill(0);
+  ghosts->SetValue(3, vtkDataSetAttributes::DUPLICATEPOINT);
+  image->GetPointData()->AddArray(ghosts);
+  filter->SetInputData(image);
+  filter->Modified();
+  filter->Update();
+  EXPECT_EQ(filter->GetNumberOfDegenerateSamples(), 3);
+  EXPECT_NE(vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))
+              ->GetPointData()
+              ->GetArray(vtkDataSetAttributes::GhostArrayName()),
+    nullptr);
+}
+
+TEST(SteerableNoiseFilter, HugeAndTinyVectorsSteerLikeOthers)
+{
+  // A power of two changes no bit of the direction; curvature neither.
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(30, 20, 1);
+  auto flow = AddFlow<vtkDoubleArray>(image);
+  const std::vector<float> expected = Noise(image);
+  for (const double scale : { std::ldexp(1.0, 200), std::ldexp(1.0, -200), std::ldexp(1.0, 900) })
+  {
+    vtkNew<vtkDoubleArray> scaled;
+    scaled->DeepCopy(flow);
+    for (vtkIdType i = 0; i < scaled->GetNumberOfValues(); ++i)
+    {
+      scaled->SetValue(i, scaled->GetValue(i) * scale);
+    }
+    vtkNew<vtkImageData> other;
+    other->CopyStructure(image);
+    other->GetPointData()->SetVectors(scaled);
+    const std::vector<float> result = Noise(other);
+    for (std::size_t i = 0; i < result.size(); ++i)
+    {
+      ASSERT_NEAR(result[i], expected[i], 2e-5) << scale;
+    }
+  }
+}
+
+TEST(SteerableNoiseFilter, LargeCoordinatesKeepTheStatistics)
+{
+  auto near = MakeImage(300, 300, 1, 0.5);
+  auto far = vtkSmartPointer<vtkImageData>::New();
+  far->ShallowCopy(near);
+  far->SetOrigin(5.0e6, 5.4e6, 0.0);
+  const std::vector<float> a = Noise(near, 4.0);
+  const std::vector<float> b = Noise(far, 4.0);
+  EXPECT_NEAR(Deviation(a), Deviation(b), 0.03);
+  double steps[2] = { 0.0, 0.0 };
+  for (std::size_t i = 1; i < a.size(); ++i)
+  {
+    steps[0] += std::pow(a[i] - a[i - 1], 2);
+    steps[1] += std::pow(b[i] - b[i - 1], 2);
+  }
+  EXPECT_NEAR(steps[0] / steps[1], 1.0, 0.1);
+}
+
+TEST(SteerableNoiseFilter, MaskBlanksStagnantFlow)
+{
+  auto image = MakeImage(40, 30, 1);
+  image->GetPointData()->GetVectors()->SetTuple3(77, 0.001, 0, 0);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(image);
+  filter->SetMaskThreshold(0.01);
+  filter->Update();
+  EXPECT_EQ(Values(filter->GetOutputDataObject(0))[77], 0.0f);
+  EXPECT_EQ(filter->GetNumberOfStagnantSamples(), 1);
+  EXPECT_EQ(filter->GetNumberOfDegenerateSamples(), 0);
+}
+
+TEST(SteerableNoiseFilter, TensorOfAVectorGivesTheVectorsNoise)
+{
+  for (const int depth : { 1, 12 })
+  {
+    auto image = MakeImage(24, 20, depth);
+    const std::vector<float> expected = Noise(image);
+    for (const int components : { 4, 6, 9 })
+    {
+      if (components == 4 && depth > 1)
+      {
+        continue; // four components have no z
+      }
+      vtkNew<vtkDoubleArray> tensors;
+      tensors->SetName("tensor");
+      tensors->SetNumberOfComponents(components);
+      tensors->SetNumberOfTuples(image->GetNumberOfPoints());
+      for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+      {
+        double v[3];
+        image->GetPointData()->GetVectors()->GetTuple(i, v);
+        const double six[6] = { v[0] * v[0], v[1] * v[1], v[2] * v[2], v[0] * v[1], v[1] * v[2],
+          v[0] * v[2] };
+        const double nine[9] = { six[0], six[3], six[5], six[3], six[1], six[4], six[5], six[4],
+          six[2] };
+        const double four[4] = { six[0], six[3], six[3], six[1] };
+        tensors->SetTuple(i, components == 4 ? four : components == 6 ? six : nine);
+      }
+      vtkNew<vtkImageData> other;
+      other->CopyStructure(image);
+      other->GetPointData()->AddArray(tensors);
+      const std::vector<float> result = Noise(other, 5.0,
+        [](vtkSteerableNoiseFilter* filter) {
+          filter->SetInputArrayToProcess(
+            0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "tensor");
+        });
+      ASSERT_EQ(result.size(), expected.size());
+      double largest = 0.0;
+      for (std::size_t i = 0; i < result.size(); ++i)
+      {
+        largest = std::max(largest, std::abs(double(result[i]) - expected[i]));
+      }
+      EXPECT_LT(largest, 2e-4) << components << " components, depth " << depth;
+    }
+  }
+}
+
+TEST(SteerableNoiseFilter, TimeMovesASteadyFlow)
+{
+  auto image = MakeImage(40, 30, 1);
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(image);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputConnection(producer->GetOutputPort());
+  filter->SetFeatureSize(5.0);
+  filter->SetTimePeriod(2.0);
+  filter->UpdateInformation();
+  vtkInformation* info = filter->GetOutputInformation(0);
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  ASSERT_TRUE(info->Has(SDDP::TIME_RANGE()));
+  EXPECT_EQ(info->Get(SDDP::TIME_RANGE())[1], 2.0);
+  EXPECT_FALSE(info->Has(SDDP::TIME_STEPS()));
+  const auto at = [&](double time)
+  {
+    filter->UpdateTimeStep(time);
+    return Values(filter->GetOutputDataObject(0));
+  };
+  const std::vector<float> start = at(0.0);
+  const std::vector<float> quarter = at(0.5);
+  const std::vector<float> end = at(2.0);
+  EXPECT_NE(start, quarter);
+  for (std::size_t i = 0; i < start.size(); ++i)
+  {
+    ASSERT_NEAR(start[i], end[i], 1e-3);
+  }
+  // Time is phase in units of the period.
+  const std::vector<float> phase =
+    Noise(image, 5.0, [](vtkSteerableNoiseFilter* f) { f->SetPhase(0.25); });
+  EXPECT_EQ(phase, quarter);
+}
+
+TEST(SteerableNoiseFilter, PhaseWrapsAndAnimateClosesTheLoop)
+{
+  auto image = MakeImage(40, 30, 1);
+  const auto at = [&](double phase, bool animate)
+  {
+    return Noise(image, 5.0,
+      [&](vtkSteerableNoiseFilter* f)
+      {
+        f->SetPhase(phase);
+        f->SetAnimate(animate);
+      });
+  };
+  EXPECT_EQ(at(0.0, false), at(1.0, false));
+  EXPECT_EQ(at(0.25, false), at(-0.75, false));
+  EXPECT_NE(at(0.0, false), at(0.0, true));
+  const std::vector<float> first = at(0.0, true);
+  const std::vector<float> last = at(0.99999, true);
+  for (std::size_t i = 0; i < first.size(); ++i)
+  {
+    ASSERT_NEAR(first[i], last[i], 1e-3);
+  }
+}
+
+TEST(SteerableNoiseFilter, MagnificationSamplesTheFieldFiner)
+{
+  for (const bool cells : { false, true })
+  {
+    auto image = MakeImage(11, 9, 1, 1.0, cells);
+    vtkNew<vtkUnsignedCharArray> labels;
+    labels->SetName("label");
+    labels->SetNumberOfTuples(image->GetNumberOfCells());
+    for (vtkIdType i = 0; i < labels->GetNumberOfTuples(); ++i)
+    {
+      labels->SetValue(i, static_cast<unsigned char>(i));
+    }
+    image->GetCellData()->AddArray(labels);
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    filter->SetInputData(image);
+    filter->SetFeatureSize(2.0);
+    filter->SetMagnification(3);
+    filter->Update();
+    auto* output = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
+    int dims[3];
+    output->GetDimensions(dims);
+    EXPECT_EQ(dims[0], 31);
+    EXPECT_EQ(dims[1], 25);
+    EXPECT_EQ(dims[2], 1);
+    double fine[6];
+    double coarse[6];
+    output->GetBounds(fine);
+    image->GetBounds(coarse);
+    for (int i = 0; i < 6; ++i)
+    {
+      EXPECT_NEAR(fine[i], coarse[i], 1e-12);
+    }
+    EXPECT_TRUE(AllFinite(Values(output)));
+    // Labels are repeated, not mixed.
+    vtkDataArray* fineLabels = output->GetCellData()->GetArray("label");
+    ASSERT_NE(fineLabels, nullptr);
+    EXPECT_EQ(fineLabels->GetComponent(0, 0), 0);
+    EXPECT_EQ(fineLabels->GetComponent(3, 0), 1);
+    EXPECT_EQ(fineLabels->GetComponent(3 * 30, 0), 10);
+    // The field is linear in between and unchanged at the coarse samples.
+    if (!cells)
+    {
+      const double* a = image->GetPointData()->GetVectors()->GetTuple(0);
+      const double a0 = a[0];
+      const double a1 = image->GetPointData()->GetVectors()->GetComponent(1, 0);
+      vtkDataArray* v = output->GetPointData()->GetVectors();
+      ASSERT_NE(v, nullptr);
+      EXPECT_NEAR(v->GetComponent(0, 0), a0, 1e-6);
+      EXPECT_NEAR(v->GetComponent(1, 0), a0 + (a1 - a0) / 3.0, 1e-6);
+      EXPECT_NEAR(v->GetComponent(3, 0), a1, 1e-6);
+    }
+  }
+}
+
+TEST(SteerableNoiseFilter, OutputMetricIsTheMetric)
+{
+  auto image = MakeImage(8, 7, 6);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(image);
+  filter->OutputMetricOn();
+  filter->SetQuality(1);
+  filter->Update();
+  auto* metric =
+    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPointData()->GetArray("Metric");
+  ASSERT_NE(metric, nullptr);
+  ASSERT_EQ(metric->GetNumberOfComponents(), 6);
+  const double k = 0.25;
+  const double b = (4.0 - k) / 2.0 - 1e-4;
+  for (vtkIdType i = 0; i < metric->GetNumberOfTuples(); ++i)
+  {
+    double v[3];
+    double m[6];
+    image->GetPointData()->GetVectors()->GetTuple(i, v);
+    metric->GetTuple(i, m);
+    const double length2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    EXPECT_NEAR(m[0], b + (k - b) * v[0] * v[0] / length2, 1e-5);
+    EXPECT_NEAR(m[4], (k - b) * v[1] * v[2] / length2, 1e-5);
+    EXPECT_NEAR(m[0] + m[1] + m[2], k + 2.0 * b, 1e-5);
+  }
+}
+
+TEST(SteerableNoiseFilter, ReExecutesOnlyWhenSomethingChanged)
+{
+  auto image = MakeImage(20, 20, 1);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  int executions = 0;
+  vtkNew<vtkCallbackCommand> count;
+  count->SetClientData(&executions);
+  count->SetCallback(
+    [](vtkObject*, unsigned long, void* client, void*) { ++*static_cast<int*>(client); });
+  filter->AddObserver(vtkCommand::StartEvent, count);
+  filter->SetInputData(image);
+  filter->Update();
+  filter->Update();
+  EXPECT_EQ(executions, 1);
+  filter->SetQuality(2);
+  filter->Update();
+  EXPECT_EQ(executions, 2);
+  filter->SetQuality(2);
+  filter->Update();
+  EXPECT_EQ(executions, 2);
+  image->GetPointData()->GetVectors()->SetTuple3(0, 1, 2, 3);
+  image->GetPointData()->GetVectors()->Modified();
+  image->Modified();
+  filter->Update();
+  EXPECT_EQ(executions, 3);
+}
+
+TEST(SteerableNoiseFilter, ReportsProgressAndAborts)
+{
+  auto image = MakeImage(300, 300, 40);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  double last = -1.0;
+  vtkNew<vtkCallbackCommand> progress;
+  progress->SetClientData(&last);
+  progress->SetCallback(
+    [](vtkObject* caller, unsigned long, void* client, void*)
+    {
+      auto* self = static_cast<vtkAlgorithm*>(caller);
+      if (self->GetProgress() < 1.0) // which the pipeline itself reports at the end
+      {
+        *static_cast<double*>(client) = self->GetProgress();
+      }
+      if (self->GetProgress() > 0.2)
+      {
+        self->SetAbortExecuteAndUpdateTime();
+      }
+    });
+  filter->AddObserver(vtkCommand::ProgressEvent, progress);
+  filter->SetInputData(image);
+  vtkSMPTools::LocalScope(vtkSMPTools::Config{ 1, "Sequential", false }, [&] { filter->Update(); });
+  EXPECT_GT(last, 0.2);
+  EXPECT_LT(last, 0.9) << "it went on after the abort";
+  EXPECT_TRUE(Values(filter->GetOutputDataObject(0)).empty()) << "half an array was handed out";
+}
+
+TEST(SteerableNoiseFilter, EveryPropertyIsPrinted)
+{
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  std::ostringstream text;
+  filter->Print(text);
+  for (const char* name : { "FeatureSize", "Quality", "MinimumEigenvalue", "EigenvalueSum",
+         "LatticeWindow", "Strength", "StrengthMode", "ReferenceMagnitude", "Normalization",
+         "FollowCurvature", "Basis", "Density", "Phase", "Animate", "Speed", "TimePeriod",
+         "Octaves", "Lacunarity", "Gain", "Turbulence", "Fade", "Falloff", "Lattice", "GradientSet",
+         "Period", "Magnification", "MaskThreshold", "Seed", "ResultArrayName", "OutputMetric" })
+  {
+    EXPECT_NE(text.str().find(name), std::string::npos) << name;
+  }
+}

@@ -1,0 +1,1287 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/// The fast path: equal to the reference at every SIMD level, to the bit however it is split.
+#include "KernelTestHelpers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+using namespace steerable;
+using namespace steerable::testing;
+
+namespace
+{
+/// Absolute, on noise of unit variance.
+constexpr double Bound = 2e-6;
+
+const char* NameOf(Steering steering)
+{
+  return steering == Steering::Vectors ? "vectors"
+    : steering == Steering::Normals    ? "normals"
+                                       : "tensors";
+}
+
+/// Largest differences by family, printed when the tests are over.
+class DifferenceTable : public ::testing::Environment
+{
+public:
+  static std::map<std::string, double>& Get()
+  {
+    static std::map<std::string, double> table;
+    return table;
+  }
+  static void Add(const std::string& family, double difference)
+  {
+    double& largest = Get()[family];
+    largest = difference <= largest ? largest : difference;
+  }
+  void TearDown() override
+  {
+    for (const auto& [family, largest] : Get())
+    {
+      std::printf("fast - reference %8.1e  %s\n", largest, family.c_str());
+    }
+  }
+};
+[[maybe_unused]] const auto* const Table = ::testing::AddGlobalTestEnvironment(new DifferenceTable);
+
+/// Compares every SIMD level with the reference, which is evaluated once.
+template <int N>
+void ExpectReference(const std::string& family, const NoiseParameters& parameters,
+  const RandomSamples& samples, Steering steering, double bound = Bound)
+{
+  const std::vector<double> slow = SlowNoise<N>(parameters, samples, steering);
+  std::vector<float> best;
+  for (std::int64_t target : SimdLevels())
+  {
+    const SimdLevel level(target);
+    const std::vector<float> fast = FastNoise<N>(parameters, samples, steering);
+    const double difference = LargestDifference(fast, slow);
+    EXPECT_LE(difference, bound) << family << ": " << N << "D, Quality " << parameters.Quality
+                                 << ", " << NameOf(steering) << ", " << hwy::TargetName(target);
+    DifferenceTable::Add(family, difference);
+    best = best.empty() ? fast : best;
+    EXPECT_LE(LargestDifference(fast, best), bound) << family << ", " << hwy::TargetName(target);
+  }
+}
+
+template <int N>
+void ExpectReferenceAtAllQualities(Normalization normalization, double bound)
+{
+  for (int quality : { 0, 1, 2, 4, 8 })
+  {
+    NoiseParameters parameters;
+    parameters.Quality = quality;
+    parameters.Normalize = normalization;
+    const bool unit = normalization == Normalization::UnitVariance;
+    // The reference visits the whole box: 9000 corners in 3D at Quality 8.
+    const int count = unit ? 2000 : N == 3 && quality == 8 ? 200 : 1000;
+    for (Steering steering : { Steering::Vectors, Steering::Tensors, Steering::Normals })
+    {
+      for (double curvature : { 0.0, 0.15, 0.6 })
+      {
+        const bool slow = !unit || (N == 3 && quality == 8);
+        if ((steering == Steering::Normals && N == 2) || (slow && curvature == 0.6))
+        {
+          continue;
+        }
+        parameters.FollowCurvature = curvature > 0.0;
+        const std::string family = std::to_string(N) + "D " +
+          (unit                                      ? "UnitVariance "
+              : normalization == Normalization::None ? "None "
+                                                     : "WeightSum ") +
+          std::to_string(quality) + " " + NameOf(steering) + (curvature > 0.0 ? " curved" : "");
+        ExpectReference<N>(family, parameters, RandomSamples(count, 1000.0, curvature, 1 + quality),
+          steering, bound);
+      }
+    }
+  }
+}
+
+/**
+ * Variants reach farther, fall off faster or leave places with hardly a surflet, whose noise is divided
+ * by no more than the root of 1e-3: rounding shows more than with the defaults.
+ */
+constexpr double VariantBound = 5e-6;
+constexpr double LooseBound = 1e-5;
+
+/// A change of the defaults, and what it may cost in precision.
+struct Variant
+{
+  const char* Name;
+  std::function<void(NoiseParameters&)> Change;
+  double Bound = VariantBound;
+};
+
+const std::vector<Variant>& Variants()
+{
+  using P = NoiseParameters;
+  static const std::vector<Variant> variants = {
+    { "Basis Value", [](P& p) { p.Surflet = Basis::Value; } },
+    { "Basis Streaks", [](P& p) { p.Surflet = Basis::Streaks; } },
+    { "Basis Streaks, Density 0.05",
+      [](P& p)
+      {
+        p.Surflet = Basis::Streaks;
+        p.Density = 0.05;
+        p.Normalize = Normalization::None;
+      } },
+    { "Basis Streaks, Density 1",
+      [](P& p)
+      {
+        p.Surflet = Basis::Streaks;
+        p.Density = 1.0;
+      } },
+    { "Fade Cubic", [](P& p) { p.Interpolant = Fade::Cubic; } },
+    { "Fade Wide", [](P& p) { p.Interpolant = Fade::Wide; } },
+    { "Falloff Radial", [](P& p) { p.Window = Falloff::Radial; } },
+    { "Lattice Jittered", [](P& p) { p.Grid = Lattice::Jittered; } },
+    { "Lattice Simplicial", [](P& p) { p.Grid = Lattice::Simplicial; } },
+    { "GradientSet Perlin", [](P& p) { p.Gradients = GradientSet::Perlin; } },
+    { "Motion, Phase 0.3",
+      [](P& p)
+      {
+        p.Motion = true;
+        p.Phase = 0.3;
+      },
+      LooseBound },
+    { "Motion, Phase -1.7, Speed -2",
+      [](P& p)
+      {
+        p.Motion = true;
+        p.Phase = -1.7;
+        p.Speed = -2.0;
+      },
+      LooseBound },
+    { "Motion, Phase 0.95, Speed 4",
+      [](P& p)
+      {
+        p.Motion = true;
+        p.Phase = 0.95;
+        p.Speed = 4.0;
+      },
+      LooseBound },
+    { "Octaves 4", [](P& p) { p.Octaves = 4; } },
+    { "Octaves 3, Lacunarity 2.7, Gain 0.9",
+      [](P& p)
+      {
+        p.Octaves = 3;
+        p.Lacunarity = 2.7;
+        p.Gain = 0.9;
+      } },
+    { "Turbulence, Octaves 3",
+      [](P& p)
+      {
+        p.Octaves = 3;
+        p.Turbulence = true;
+      } },
+    { "Period",
+      [](P& p) {
+        p.Period = { 5, 7, 3 };
+      } },
+    { "Period of 1 cell",
+      [](P& p) {
+        p.Period = { 1, 1, 1 };
+      } },
+    { "Period, Octaves 3",
+      [](P& p)
+      {
+        p.Period = { 4, 0, 9 };
+        p.Octaves = 3;
+        p.Lacunarity = 3.0;
+      } },
+    { "Strength 0", [](P& p) { p.Strength = 0.0; } },
+    { "Strength 0.4", [](P& p) { p.Strength = 0.4; } },
+    { "Strength by Magnitude",
+      [](P& p)
+      {
+        p.StrengthBy = StrengthMode::Magnitude;
+        p.ReferenceMagnitude = 2.0;
+      } },
+    { "EigenvalueSum 2", [](P& p) { p.EigenvalueSum = 2.0; } },
+    { "EigenvalueSum 8", [](P& p) { p.EigenvalueSum = 8.0; }, LooseBound },
+    { "EigenvalueSum 16", [](P& p) { p.EigenvalueSum = 16.0; }, LooseBound },
+    { "MinimumEigenvalue 0.02", [](P& p) { p.MinimumEigenvalue = 0.02; }, LooseBound },
+    { "MinimumEigenvalue 1", [](P& p) { p.MinimumEigenvalue = 1.0; } },
+    { "LatticeWindow off", [](P& p) { p.LatticeWindow = false; } },
+    { "LatticeWindow off, Quality 0, k = 1",
+      [](P& p)
+      {
+        p.LatticeWindow = false;
+        p.Quality = 0;
+        p.MinimumEigenvalue = 1.0;
+        p.Normalize = Normalization::None;
+      } },
+    { "AnisotropicWeight off", [](P& p) { p.AnisotropicWeight = false; } },
+    { "AnisotropicWeight off, None",
+      [](P& p)
+      {
+        p.AnisotropicWeight = false;
+        p.Normalize = Normalization::None;
+        p.Quality = 0;
+      } },
+    { "Seed 12345", [](P& p) { p.Seed = 12345; } },
+    { "Seed 2^32 - 1, Octaves 3",
+      [](P& p)
+      {
+        p.Seed = 0xFFFFFFFFu;
+        p.Octaves = 3;
+      } },
+    { "FeatureSize 37.5", [](P& p) { p.FeatureSize = 37.5; } },
+    { "FeatureSize 0.3", [](P& p) { p.FeatureSize = 0.3; } },
+    // Several at once.
+    { "Wide, Jittered, Motion",
+      [](P& p)
+      {
+        p.Interpolant = Fade::Wide;
+        p.Grid = Lattice::Jittered;
+        p.Motion = true;
+        p.Phase = 0.4;
+      } },
+    { "Streaks, Motion, Jittered",
+      [](P& p)
+      {
+        p.Surflet = Basis::Streaks;
+        p.Grid = Lattice::Jittered;
+        p.Motion = true;
+        p.Phase = 0.77;
+        p.Speed = -1.5;
+      },
+      LooseBound },
+    { "Value, Simplicial, Radial, Turbulence, Octaves 2",
+      [](P& p)
+      {
+        p.Surflet = Basis::Value;
+        p.Grid = Lattice::Simplicial;
+        p.Window = Falloff::Radial;
+        p.Turbulence = true;
+        p.Octaves = 2;
+      } },
+    { "Perlin, Cubic, Period, Motion",
+      [](P& p)
+      {
+        p.Gradients = GradientSet::Perlin;
+        p.Interpolant = Fade::Cubic;
+        p.Period = { 3, 6, 5 };
+        p.Motion = true;
+        p.Phase = 0.1;
+      } },
+    { "Streaks, Simplicial, no window",
+      [](P& p)
+      {
+        p.Surflet = Basis::Streaks;
+        p.Grid = Lattice::Simplicial;
+        p.LatticeWindow = false;
+        p.Quality = 1;
+      } },
+    { "Wide, Motion, no window",
+      [](P& p)
+      {
+        p.Interpolant = Fade::Wide;
+        p.LatticeWindow = false;
+        p.Motion = true;
+        p.Phase = 0.6;
+        p.Quality = 1;
+      } },
+    { "no AnisotropicWeight, Radial, Jittered, Perlin",
+      [](P& p)
+      {
+        p.AnisotropicWeight = false;
+        p.Window = Falloff::Radial;
+        p.Grid = Lattice::Jittered;
+        p.Gradients = GradientSet::Perlin;
+      } },
+    { "Jittered, Period, Wide, Radial, Value",
+      [](P& p)
+      {
+        p.Grid = Lattice::Jittered;
+        p.Period = { 4, 4, 4 };
+        p.Interpolant = Fade::Wide;
+        p.Window = Falloff::Radial;
+        p.Surflet = Basis::Value;
+      } },
+    { "Simplicial, Motion, Strength by Magnitude, Cubic",
+      [](P& p)
+      {
+        p.Grid = Lattice::Simplicial;
+        p.Motion = true;
+        p.Phase = 0.5;
+        p.StrengthBy = StrengthMode::Magnitude;
+        p.Interpolant = Fade::Cubic;
+      } },
+  };
+  return variants;
+}
+
+template <int N>
+void ExpectReferenceOfVariants()
+{
+  for (const Variant& variant : Variants())
+  {
+    for (Steering steering : { Steering::Vectors, Steering::Tensors, Steering::Normals })
+    {
+      for (double curvature : { 0.0, 0.3 })
+      {
+        // A part of the combinations, each option in at least one of them.
+        const bool plain = steering == Steering::Vectors;
+        if ((N == 2 && steering == Steering::Normals) || (!plain && curvature == 0.0))
+        {
+          continue;
+        }
+        NoiseParameters parameters;
+        parameters.Quality = 2;
+        parameters.FollowCurvature = curvature > 0.0;
+        variant.Change(parameters);
+        const double perWorldUnit = curvature / parameters.FeatureSize;
+        ExpectReference<N>(std::to_string(N) + "D variant " + variant.Name, parameters,
+          RandomSamples(N == 2 ? 400 : 80, 50.0, perWorldUnit, 5), steering, variant.Bound);
+      }
+    }
+  }
+}
+
+// ---- images ---------------------------------------------------------------------------------------
+
+/// A flow with vortices, so that its curvature changes from place to place.
+Eigen::Vector3d Swirl(const Eigen::Vector3d& p)
+{
+  return { std::sin(0.31 * p[1]) + 0.4 * std::cos(0.23 * p[2]) + 0.2,
+    std::cos(0.27 * p[0]) - 0.3 * std::sin(0.19 * p[1]), 0.5 * std::sin(0.21 * p[0] + 0.3 * p[1]) };
+}
+
+ImageGrid SmallGrid(int dimension)
+{
+  ImageGrid grid;
+  grid.Origin = { -3.2, 1.7, 0.4 };
+  grid.Spacing = { 0.5, 0.75, 0.6 };
+  grid.Dimensions = { dimension == 2 ? 61 : 19, dimension == 2 ? 23 : 9, dimension == 2 ? 1 : 7 };
+  return grid;
+}
+
+/**
+ * An image through the reference. Curvature (û . grad) û comes from central differences of unit
+ * vectors, one-sided at the border, neighbours turned to the side of the sample's own vector.
+ */
+template <int N>
+std::vector<double> SlowImage(
+  const NoiseParameters& parameters, const ImageGrid& grid, const std::vector<float>& vectors)
+{
+  const auto at = [&](const std::array<std::int64_t, 3>& index)
+  {
+    const std::int64_t flat =
+      (index[2] * grid.Dimensions[1] + index[1]) * grid.Dimensions[0] + index[0];
+    return Vector<N>(
+      Eigen::Map<const Eigen::Vector3f>(vectors.data() + 3 * flat).cast<double>().head(N));
+  };
+  std::vector<double> noise;
+  std::array<std::int64_t, 3> i;
+  for (i[2] = 0; i[2] < grid.Dimensions[2]; ++i[2])
+  {
+    for (i[1] = 0; i[1] < grid.Dimensions[1]; ++i[1])
+    {
+      for (i[0] = 0; i[0] < grid.Dimensions[0]; ++i[0])
+      {
+        Vector<N> place;
+        const Vector<N> u = at(i).normalized();
+        Vector<N> curvature = Vector<N>::Zero();
+        for (int axis = 0; axis < N; ++axis)
+        {
+          place[axis] = grid.Origin[axis] + (grid.FirstIndex[axis] + i[axis]) * grid.Spacing[axis];
+          auto before = i;
+          auto after = i;
+          before[axis] = std::max<std::int64_t>(i[axis] - 1, 0);
+          after[axis] = std::min(i[axis] + 1, grid.Dimensions[axis] - 1);
+          if (before[axis] < after[axis] && parameters.FollowCurvature)
+          {
+            Vector<N> a = at(before).normalized();
+            Vector<N> c = at(after).normalized();
+            a *= a.dot(u) < 0.0 ? -1.0 : 1.0;
+            c *= c.dot(u) < 0.0 ? -1.0 : 1.0;
+            const double width = (after[axis] - before[axis]) * grid.Spacing[axis];
+            curvature += u[axis] * (c - a) / width;
+          }
+        }
+        noise.push_back(SteerableNoiseReference<N>(
+          parameters, place, MetricFromVector<N>(parameters, at(i)), curvature));
+      }
+    }
+  }
+  return noise;
+}
+
+template <int N>
+void ExpectReferenceOfImages(const NoiseParameters& parameters, const ImageGrid& grid,
+  const VectorFunction& function, const std::string& family, double bound = Bound)
+{
+  const std::vector<float> vectors = SampleVectors(grid, function);
+  const std::vector<double> slow = SlowImage<N>(parameters, grid, vectors);
+  for (std::int64_t target : SimdLevels())
+  {
+    const SimdLevel level(target);
+    const double difference = LargestDifference(ImageNoise(parameters, N, grid, vectors), slow);
+    EXPECT_LE(difference, bound) << family << ", " << hwy::TargetName(target);
+    DifferenceTable::Add(family, difference);
+  }
+}
+
+/// Noise of points in a given split, one call after the other.
+template <int N>
+std::vector<float> SplitNoise(const NoiseParameters& parameters, const RandomSamples& samples,
+  const std::vector<std::size_t>& cuts)
+{
+  const ContiguousReader<double, 3> positions(samples.Positions.data());
+  const ContiguousReader<float, 3> vectors(samples.Vectors.data());
+  const ContiguousReader<float, 3> curvature(samples.Curvature.data());
+  Field field;
+  field.Vectors = &vectors;
+  field.Curvature = &curvature;
+  const SteerableNoise kernel(parameters, N);
+  std::vector<float> noise(samples.Count);
+  std::size_t begin = 0;
+  for (std::size_t end : cuts)
+  {
+    kernel.EvaluatePoints(positions, field, begin, end, noise.data());
+    begin = end;
+  }
+  kernel.EvaluatePoints(positions, field, begin, samples.Count, noise.data());
+  return noise;
+}
+
+/// The parameters whose bits are compared: the fast loops and the variants' own.
+std::vector<NoiseParameters> ParametersOfSplits()
+{
+  std::vector<NoiseParameters> all(6);
+  all[1].Quality = 0;
+  all[1].FollowCurvature = false;
+  all[1].Normalize = Normalization::None;
+  all[2].Quality = 8;
+  all[3].Motion = true;
+  all[3].Phase = 0.3;
+  all[3].Grid = Lattice::Jittered;
+  all[4].Octaves = 3;
+  all[4].Normalize = Normalization::WeightSum;
+  all[5].Surflet = Basis::Streaks;
+  all[5].Period = { 4, 4, 4 };
+  return all;
+}
+
+/**
+ * The samples [first, last) of an axis of a whole image, evaluated as a piece of its own that has one
+ * ghost layer where the whole goes on.
+ */
+std::vector<float> PieceNoise(const NoiseParameters& parameters, int dimension,
+  const ImageGrid& whole, const std::vector<float>& vectors, int axis, std::int64_t first,
+  std::int64_t last, ImageGrid& piece)
+{
+  piece = whole;
+  const std::int64_t low = std::max<std::int64_t>(first - 1, 0);
+  const std::int64_t high = std::min(last + 1, whole.Dimensions[axis]);
+  piece.FirstIndex[axis] += low;
+  piece.Dimensions[axis] = high - low;
+  std::vector<float> own;
+  for (std::int64_t k = 0; k < piece.Dimensions[2]; ++k)
+  {
+    for (std::int64_t j = 0; j < piece.Dimensions[1]; ++j)
+    {
+      for (std::int64_t i = 0; i < piece.Dimensions[0]; ++i)
+      {
+        std::int64_t index[3] = { i, j, k };
+        index[axis] += low;
+        const std::int64_t flat =
+          (index[2] * whole.Dimensions[1] + index[1]) * whole.Dimensions[0] + index[0];
+        own.insert(own.end(), vectors.begin() + 3 * flat, vectors.begin() + 3 * flat + 3);
+      }
+    }
+  }
+  return ImageNoise(parameters, dimension, piece, own);
+}
+
+void ExpectPiecesEqualWhole(const NoiseParameters& parameters, int dimension)
+{
+  ImageGrid grid;
+  grid.Origin = { 0.3, -7.1, 2.0 };
+  grid.Spacing = { 0.31, 0.37, 0.41 };
+  // Longer than a block of the kernel along x, and no multiple of a register.
+  grid.Dimensions = { dimension == 2 ? 301 : 45, 38, dimension == 2 ? 1 : 15 };
+  grid.FirstIndex = { -17, 5, 3 };
+  const std::vector<float> vectors = SampleVectors(grid, Swirl);
+  const std::vector<float> whole = ImageNoise(parameters, dimension, grid, vectors);
+  for (int axis = 0; axis < dimension; ++axis)
+  {
+    std::size_t compared = 0;
+    for (int part = 0; part < 7; ++part)
+    {
+      const std::int64_t first = part * grid.Dimensions[axis] / 7;
+      const std::int64_t last = (part + 1) * grid.Dimensions[axis] / 7;
+      ImageGrid piece;
+      const std::vector<float> noise =
+        PieceNoise(parameters, dimension, grid, vectors, axis, first, last, piece);
+      for (std::size_t n = 0; n < noise.size(); ++n)
+      {
+        const auto flat = static_cast<std::int64_t>(n);
+        std::int64_t index[3] = { flat % piece.Dimensions[0],
+          flat / piece.Dimensions[0] % piece.Dimensions[1],
+          flat / (piece.Dimensions[0] * piece.Dimensions[1]) };
+        for (int i = 0; i < 3; ++i)
+        {
+          index[i] += piece.FirstIndex[i] - grid.FirstIndex[i];
+        }
+        if (index[axis] >= first && index[axis] < last) // no ghost
+        {
+          ASSERT_EQ(noise[n],
+            whole[(index[2] * grid.Dimensions[1] + index[1]) * grid.Dimensions[0] + index[0]])
+            << "axis " << axis << ", piece " << part;
+          ++compared;
+        }
+      }
+    }
+    EXPECT_EQ(compared, whole.size());
+  }
+}
+
+// ---- corners --------------------------------------------------------------------------------------
+
+struct CornerCounts
+{
+  double Inside = 0.0;
+  double Visited = 0.0;
+};
+
+/**
+ * Corners per sample: those with q < 1 under the window, counted one by one, and those the kernel
+ * visits. Every sample stands 16 times in a row, so that all lanes of a register agree and a count is
+ * that of the sample, not of its neighbours.
+ */
+template <int N>
+CornerCounts CountCorners(const NoiseParameters& parameters)
+{
+  constexpr std::size_t copies = 16;
+  constexpr std::size_t places = 4000;
+  RandomSamples samples(copies * places, 100.0, 0.0, 21);
+  CornerCounts counts;
+  for (std::size_t place = 0; place < places; ++place)
+  {
+    for (std::size_t copy = 1; copy < copies; ++copy)
+    {
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        const std::size_t from = 3 * copies * place + axis;
+        samples.Positions[from + 3 * copy] = samples.Positions[from];
+        samples.Vectors[from + 3 * copy] = samples.Vectors[from];
+      }
+    }
+    const std::size_t i = copies * place;
+    const Matrix<N> G =
+      MetricFromVector<N>(parameters, samples.Get<N>(samples.Vectors, i)).ToMatrix();
+    const Vector<N> p = samples.GetPosition<N>(i);
+    const int side = 2 * parameters.Quality + 2;
+    const int corners = N == 2 ? side * side : side * side * side;
+    for (int corner = 0; corner < corners; ++corner)
+    {
+      Vector<N> v;
+      for (int axis = 0, rest = corner; axis < N; ++axis, rest /= side)
+      {
+        v[axis] = std::floor(p[axis]) + rest % side - parameters.Quality - p[axis];
+      }
+      counts.Inside +=
+        v.dot(G * v) < 1.0 && v.cwiseAbs().maxCoeff() < parameters.Quality + 1 ? 1.0 : 0.0;
+    }
+  }
+  EvaluationCounts found;
+  FastNoise<N>(parameters, samples, Steering::Vectors, &found);
+  counts.Visited = static_cast<double>(found.VisitedCorners) / static_cast<double>(samples.Count);
+  counts.Inside /= places;
+  return counts;
+}
+} // namespace
+
+TEST(SteerableNoise, EqualsTheReferenceInThePlane)
+{
+  ExpectReferenceAtAllQualities<2>(Normalization::UnitVariance, Bound);
+  ExpectReferenceAtAllQualities<2>(Normalization::None, Bound);
+}
+
+TEST(SteerableNoise, EqualsTheReferenceInSpace)
+{
+  ExpectReferenceAtAllQualities<3>(Normalization::UnitVariance, Bound);
+  ExpectReferenceAtAllQualities<3>(Normalization::None, Bound);
+}
+
+TEST(SteerableNoise, EqualsTheReferenceDividedByWeights)
+{
+  // Weights come down to 1e-8, where q is within 1e-3 of 1: its rounding counts a thousandfold.
+  constexpr double bound = 1e-5;
+  ExpectReferenceAtAllQualities<2>(Normalization::WeightSum, bound);
+  ExpectReferenceAtAllQualities<3>(Normalization::WeightSum, bound);
+}
+
+TEST(SteerableNoise, EqualsTheReferenceForVariantsInThePlane)
+{
+  ExpectReferenceOfVariants<2>();
+}
+
+TEST(SteerableNoise, EqualsTheReferenceForVariantsInSpace)
+{
+  ExpectReferenceOfVariants<3>();
+}
+
+TEST(SteerableNoise, EqualsTheReferenceFarFromTheOrigin)
+{
+  // Cells beyond 2^32 wrap, fractions keep their precision: positions are double.
+  for (double extent : { 1e6, 1e9, 1e11 })
+  {
+    for (bool period : { false, true })
+    {
+      NoiseParameters parameters;
+      parameters.Quality = 1;
+      parameters.FollowCurvature = false;
+      if (period)
+      {
+        parameters.Period = { 1000, 999, 77 };
+      }
+      const RandomSamples samples(500, extent, 0.0);
+      ExpectReference<2>("2D far from the origin", parameters, samples, Steering::Vectors);
+      ExpectReference<3>("3D far from the origin", parameters, samples, Steering::Vectors);
+    }
+  }
+}
+
+TEST(SteerableNoise, HasTheLevelsOfTheMachine)
+{
+  const std::vector<std::int64_t> levels = SimdLevels();
+  ASSERT_FALSE(levels.empty());
+  std::printf("SIMD levels:");
+  for (std::int64_t target : levels)
+  {
+    std::printf(" %s", hwy::TargetName(target));
+  }
+  std::printf("\n");
+  // With and without fused multiply-add the last bits differ: were they all equal, no level would
+  // have been forced.
+  if (levels.front() == HWY_AVX3 || levels.front() == HWY_AVX2)
+  {
+    const NoiseParameters parameters;
+    const RandomSamples samples(1000, 10.0, 0.1);
+    const std::vector<float> best = FastNoise<3>(parameters, samples, Steering::Vectors);
+    const SimdLevel level(levels.back());
+    EXPECT_NE(FastNoise<3>(parameters, samples, Steering::Vectors), best);
+  }
+}
+
+TEST(SteerableNoise, EqualsTheReferenceOnImages)
+{
+  for (int quality : { 0, 4 })
+  {
+    for (bool curved : { false, true })
+    {
+      for (Normalization normalization : { Normalization::UnitVariance, Normalization::None })
+      {
+        NoiseParameters parameters;
+        parameters.Quality = quality;
+        parameters.FollowCurvature = curved;
+        parameters.Normalize = normalization;
+        parameters.FeatureSize = 1.5;
+        const std::string family = std::string(" image") + (curved ? ", curved" : "");
+        ExpectReferenceOfImages<2>(parameters, SmallGrid(2), Swirl, "2D" + family);
+        ExpectReferenceOfImages<3>(parameters, SmallGrid(3), Swirl, "3D" + family);
+      }
+    }
+  }
+}
+
+TEST(SteerableNoise, EqualsTheReferenceOnUnusualImages)
+{
+  NoiseParameters parameters;
+  parameters.FeatureSize = 1.5;
+  parameters.Quality = 2;
+  ImageGrid grid = SmallGrid(2);
+  // More than a cell per sample, and backwards: the rows of gradients do not serve.
+  grid.Spacing = { 2.0, 1.1, 1.0 };
+  ExpectReferenceOfImages<2>(parameters, grid, Swirl, "2D image, coarse");
+  grid.Spacing = { -0.4, -0.6, 1.0 };
+  ExpectReferenceOfImages<2>(parameters, grid, Swirl, "2D image, negative spacing");
+  // A line of samples has no neighbours across.
+  grid = SmallGrid(2);
+  grid.Dimensions = { 1, 20, 1 };
+  ExpectReferenceOfImages<2>(parameters, grid, Swirl, "2D image, one column");
+  grid.Dimensions = { 1, 1, 1 };
+  ExpectReferenceOfImages<2>(parameters, grid, Swirl, "2D image, one sample");
+  grid.Dimensions = { 7, 1, 1 };
+  ExpectReferenceOfImages<3>(parameters, grid, Swirl, "3D image, one row");
+  // Neighbours that point the other way are the same line.
+  grid = SmallGrid(3);
+  const VectorFunction flipped = [](const Eigen::Vector3d& p)
+  { return Eigen::Vector3d(std::sin(37.0 * (p[0] + p[1] + p[2])) < 0.0 ? -Swirl(p) : Swirl(p)); };
+  ExpectReferenceOfImages<3>(parameters, grid, flipped, "3D image, senses mixed");
+  // Variants, octaves and periods walk lane by lane.
+  for (std::size_t i = 0; i < Variants().size(); ++i)
+  {
+    NoiseParameters changed = parameters;
+    Variants()[i].Change(changed);
+    changed.FeatureSize = 1.5;
+    grid = SmallGrid(2);
+    grid.Dimensions = { 21, 9, 1 };
+    ExpectReferenceOfImages<2>(
+      changed, grid, Swirl, std::string("2D image of ") + Variants()[i].Name, Variants()[i].Bound);
+  }
+  // Oblique axes in space.
+  parameters.Grid = Lattice::Simplicial;
+  grid = SmallGrid(3);
+  grid.Dimensions = { 9, 5, 3 };
+  ExpectReferenceOfImages<3>(parameters, grid, Swirl, "3D image, simplicial", VariantBound);
+}
+
+TEST(SteerableNoise, HasTheSameBitsInAnySplitOfPoints)
+{
+  const RandomSamples samples(1000, 30.0, 0.2, 3);
+  for (const NoiseParameters& parameters : ParametersOfSplits())
+  {
+    const std::vector<float> whole2 = SplitNoise<2>(parameters, samples, {});
+    const std::vector<float> whole3 = SplitNoise<3>(parameters, samples, {});
+    std::vector<std::size_t> one(samples.Count);
+    for (std::size_t i = 0; i < one.size(); ++i)
+    {
+      one[i] = i;
+    }
+    for (const std::vector<std::size_t>& cuts : { std::vector<std::size_t>{ 1, 2, 3, 5, 8, 999 },
+           { 7, 263, 264, 520 }, { 256, 512, 768 }, { 500 }, one })
+    {
+      EXPECT_EQ(SplitNoise<2>(parameters, samples, cuts), whole2);
+      EXPECT_EQ(SplitNoise<3>(parameters, samples, cuts), whole3);
+    }
+  }
+}
+
+TEST(SteerableNoise, HasTheSameBitsInAnyOrderOfPoints)
+{
+  // Other neighbours in the register, same value.
+  const RandomSamples samples(1000, 30.0, 0.2, 4);
+  RandomSamples reversed = samples;
+  for (std::size_t i = 0; i < samples.Count; ++i)
+  {
+    const std::size_t from = 3 * (samples.Count - 1 - i);
+    std::copy_n(samples.Positions.begin() + from, 3, reversed.Positions.begin() + 3 * i);
+    std::copy_n(samples.Vectors.begin() + from, 3, reversed.Vectors.begin() + 3 * i);
+    std::copy_n(samples.Curvature.begin() + from, 3, reversed.Curvature.begin() + 3 * i);
+  }
+  for (const NoiseParameters& parameters : ParametersOfSplits())
+  {
+    std::vector<float> noise = SplitNoise<3>(parameters, reversed, {});
+    std::reverse(noise.begin(), noise.end());
+    EXPECT_EQ(noise, SplitNoise<3>(parameters, samples, {}));
+  }
+}
+
+TEST(SteerableNoise, HasTheSameBitsInAnySplitOfRowsAndOnTwoThreads)
+{
+  for (int dimension : { 2, 3 })
+  {
+    ImageGrid grid = SmallGrid(dimension);
+    grid.Dimensions = { dimension == 2 ? 300 : 50, 40, dimension == 2 ? 1 : 6 };
+    const std::vector<float> vectors = SampleVectors(grid, Swirl);
+    const ContiguousReader<float, 3> reader(vectors.data());
+    Field field;
+    field.Vectors = &reader;
+    for (const NoiseParameters& parameters : ParametersOfSplits())
+    {
+      const std::vector<float> whole = ImageNoise(parameters, dimension, grid, vectors);
+      const SteerableNoise kernel(parameters, dimension);
+      const std::size_t rows = grid.GetNumberOfRows();
+      for (std::size_t step : { std::size_t(1), std::size_t(7), rows - 1 })
+      {
+        std::vector<float> noise(whole.size());
+        for (std::size_t row = 0; row < rows; row += step)
+        {
+          kernel.EvaluateImage(grid, field, row, std::min(rows, row + step), noise.data());
+        }
+        EXPECT_EQ(noise, whole) << "rows by " << step;
+      }
+      std::vector<float> noise(whole.size());
+      const auto work = [&](std::size_t parity)
+      {
+        for (std::size_t row = 5 * parity; row < rows; row += 10)
+        {
+          kernel.EvaluateImage(grid, field, row, std::min(rows, row + 5), noise.data());
+        }
+      };
+      std::thread first(work, 0);
+      std::thread second(work, 1);
+      first.join();
+      second.join();
+      EXPECT_EQ(noise, whole) << "two threads";
+    }
+  }
+}
+
+TEST(SteerableNoise, HasTheSameBitsOnPointsOfTwoThreads)
+{
+  const RandomSamples samples(5000, 30.0, 0.2, 3);
+  const ContiguousReader<double, 3> positions(samples.Positions.data());
+  const ContiguousReader<float, 3> vectors(samples.Vectors.data());
+  Field field;
+  field.Vectors = &vectors;
+  const NoiseParameters parameters;
+  const SteerableNoise kernel(parameters, 3);
+  std::vector<float> whole(samples.Count);
+  kernel.EvaluatePoints(positions, field, 0, samples.Count, whole.data());
+  std::vector<float> noise(samples.Count);
+  std::thread first([&] { kernel.EvaluatePoints(positions, field, 0, 2345, noise.data()); });
+  std::thread second(
+    [&] { kernel.EvaluatePoints(positions, field, 2345, samples.Count, noise.data()); });
+  first.join();
+  second.join();
+  EXPECT_EQ(noise, whole);
+}
+
+TEST(SteerableNoise, HasTheSameBitsInPieces)
+{
+  for (const NoiseParameters& parameters : ParametersOfSplits())
+  {
+    ExpectPiecesEqualWhole(parameters, 2);
+    ExpectPiecesEqualWhole(parameters, 3);
+  }
+}
+
+TEST(SteerableNoise, HasTheSameStatisticsFarFromTheOrigin)
+{
+  const auto deviationAt = [](double origin, int quality)
+  {
+    ImageGrid grid;
+    grid.Origin = { origin, -origin, 0.0 };
+    grid.Spacing = { 0.5, 0.5, 1.0 };
+    grid.Dimensions = { 640, 640, 1 };
+    NoiseParameters parameters;
+    parameters.FeatureSize = 2.0;
+    parameters.Quality = quality;
+    const std::vector<float> noise = ImageNoise(parameters, 2, grid,
+      SampleVectors(grid, [](const Eigen::Vector3d&) { return Eigen::Vector3d(0.8, 0.6, 0.0); }));
+    double sum = 0.0;
+    double squares = 0.0;
+    for (float value : noise)
+    {
+      sum += value;
+      squares += double(value) * value;
+    }
+    const auto count = static_cast<double>(noise.size());
+    EXPECT_LE(std::abs(sum / count), 0.03);
+    return std::sqrt(squares / count - sum / count * sum / count);
+  };
+  for (int quality : { 0, 4 })
+  {
+    const double here = deviationAt(0.0, quality);
+    for (double origin : { 5e6, -5e6, 1e9 })
+    {
+      const double there = deviationAt(origin, quality);
+      std::printf("standard deviation at 0 and at %.0e: %.4f, %.4f\n", origin, here, there);
+      EXPECT_NEAR(there / here, 1.0, 0.02) << origin;
+    }
+  }
+}
+
+TEST(SteerableNoise, VisitsTheCornersOfTheEllipsoidOnly)
+{
+  // The table of Documentation/noise-model.md, section 7.
+  const std::map<int, std::array<double, 2>> table = { { 0, { 2.1, 3.1 } }, { 2, { 3.9, 5.5 } },
+    { 4, { 5.0, 6.9 } }, { 8, { 6.7, 9.0 } } };
+  for (const auto& [quality, expected] : table)
+  {
+    NoiseParameters parameters;
+    parameters.Quality = quality;
+    parameters.FollowCurvature = false;
+    const CornerCounts counts[2] = { CountCorners<2>(parameters), CountCorners<3>(parameters) };
+    for (int i = 0; i < 2; ++i)
+    {
+      std::printf("corners per sample in %dD at Quality %d: %.2f inside, %.2f visited\n", i + 2,
+        quality, counts[i].Inside, counts[i].Visited);
+      EXPECT_NEAR(counts[i].Inside, expected[i], 0.04 * expected[i]) << quality;
+      // The walk's slack of 1e-3 in q and in the extent may add a few, never take one.
+      EXPECT_GE(counts[i].Visited, counts[i].Inside);
+      EXPECT_LE(counts[i].Visited, 1.01 * counts[i].Inside) << quality;
+    }
+  }
+  // Unnormalised Quality 0 takes the corners of the cell as they are.
+  NoiseParameters cell;
+  cell.Quality = 0;
+  cell.FollowCurvature = false;
+  cell.Normalize = Normalization::None;
+  EXPECT_EQ(CountCorners<2>(cell).Visited, 4.0);
+  EXPECT_EQ(CountCorners<3>(cell).Visited, 8.0);
+}
+
+TEST(SteerableNoise, GivesFiniteNoiseWithoutADirection)
+{
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float bad[6][3] = { { 0, 0, 0 }, { nan, 1, 1 }, { 1, nan, 0 }, { infinity, 0, 0 },
+    { 1, -infinity, 2 }, { -0.0f, 0, -0.0f } };
+  for (double curvature : { 0.0, 0.3 })
+  {
+    for (int quality : { 0, 4 })
+    {
+      NoiseParameters parameters;
+      parameters.Quality = quality;
+      parameters.FollowCurvature = curvature > 0.0;
+      RandomSamples samples(600, 30.0, curvature, 8);
+      const std::vector<float> healthy = FastNoise<3>(parameters, samples, Steering::Vectors);
+      for (int i = 0; i < 60; ++i)
+      {
+        std::copy_n(bad[i % 6], 3, samples.Vectors.begin() + 3 * 10 * i);
+      }
+      EvaluationCounts counts;
+      const std::vector<float> noise =
+        FastNoise<3>(parameters, samples, Steering::Vectors, &counts);
+      EXPECT_EQ(counts.Degenerate, 60u);
+      EXPECT_EQ(counts.Stagnant, 0u);
+      for (std::size_t i = 0; i < samples.Count; ++i)
+      {
+        ASSERT_TRUE(std::isfinite(noise[i])) << i;
+        if (i % 10 != 0)
+        {
+          ASSERT_EQ(noise[i], healthy[i]) << "a neighbour changed";
+        }
+      }
+      // The isotropic metric, as the reference has it, bent by nothing.
+      ExpectReference<3>("3D without a direction", parameters, samples, Steering::Vectors);
+      FastNoise<2>(parameters, samples, Steering::Vectors, &counts);
+      EXPECT_EQ(counts.Degenerate, 60u);
+      ExpectReference<2>("2D without a direction", parameters, samples, Steering::Vectors);
+    }
+  }
+}
+
+TEST(SteerableNoise, GivesFiniteNoiseForTensorsWithoutADirection)
+{
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float bad[4][6] = { { 0, 0, 0, 0, 0, 0 }, { 3, 3, 3, 0, 0, 0 }, { nan, 1, 2, 3, 4, 5 },
+    { 1, 2, 3, std::numeric_limits<float>::infinity(), 4, 5 } };
+  RandomSamples samples(200, 30.0, 0.3, 8);
+  for (int i = 0; i < 20; ++i)
+  {
+    std::copy_n(bad[i % 4], 6, samples.Tensors.begin() + 6 * 10 * i);
+  }
+  const NoiseParameters parameters;
+  EvaluationCounts counts;
+  const std::vector<float> noise = FastNoise<3>(parameters, samples, Steering::Tensors, &counts);
+  EXPECT_EQ(counts.Degenerate, 20u);
+  EXPECT_TRUE(std::all_of(noise.begin(), noise.end(), [](float x) { return std::isfinite(x); }));
+  ExpectReference<3>("3D without a direction", parameters, samples, Steering::Tensors);
+}
+
+TEST(SteerableNoise, GivesFiniteNoiseWithoutADirectionOnImages)
+{
+  ImageGrid grid = SmallGrid(2);
+  std::vector<float> vectors = SampleVectors(grid, Swirl);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::size_t bad[4] = { 0, 60, 61 * 11 + 30, 61 * 23 - 1 }; // corners and the inside
+  for (std::size_t i = 0; i < 4; ++i)
+  {
+    vectors[3 * bad[i]] = i % 2 ? nan : 0.0f;
+    vectors[3 * bad[i] + 1] = 0.0f;
+  }
+  EvaluationCounts counts;
+  const std::vector<float> noise = ImageNoise(NoiseParameters(), 2, grid, vectors, &counts);
+  EXPECT_EQ(counts.Degenerate, 4u);
+  EXPECT_TRUE(std::all_of(noise.begin(), noise.end(), [](float x) { return std::isfinite(x); }));
+}
+
+TEST(SteerableNoise, TakesVectorsOfAnyLength)
+{
+  NoiseParameters parameters;
+  RandomSamples samples(300, 30.0, 0.1, 8);
+  const std::vector<float> noise = FastNoise<3>(parameters, samples, Steering::Vectors);
+  for (float scale : { 1e-38f, 1e-30f, 1e-15f, 1e15f, 1e30f, 5e37f })
+  {
+    RandomSamples scaled = samples;
+    for (float& x : scaled.Vectors)
+    {
+      x *= scale;
+    }
+    EvaluationCounts counts;
+    const std::vector<float> same = FastNoise<3>(parameters, scaled, Steering::Vectors, &counts);
+    EXPECT_EQ(counts.Degenerate, 0u) << scale;
+    EXPECT_LE(LargestDifference(same, noise), scale < 1e-37f ? 1e-4 : 1e-5) << scale;
+  }
+  // Denormal numbers have few bits left, so compare with a vector that has as few.
+  for (std::size_t i = 0; i < samples.Count; ++i)
+  {
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      samples.Vectors[3 * i + axis] = std::round(10.0f * samples.Vectors[3 * i + axis]) + 0.5f;
+    }
+  }
+  RandomSamples denormal = samples;
+  for (float& x : denormal.Vectors)
+  {
+    x *= 2.0f * std::numeric_limits<float>::denorm_min();
+  }
+  EvaluationCounts counts;
+  EXPECT_LE(LargestDifference(FastNoise<3>(parameters, denormal, Steering::Vectors, &counts),
+              FastNoise<3>(parameters, samples, Steering::Vectors)),
+    1e-5);
+  EXPECT_EQ(counts.Degenerate, 0u);
+}
+
+TEST(SteerableNoise, TakesAnyCurvature)
+{
+  NoiseParameters parameters;
+  RandomSamples samples(300, 30.0, 0.1, 8);
+  const float bad[5] = { std::numeric_limits<float>::quiet_NaN(),
+    std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), 1e30f,
+    1e-42f };
+  for (std::size_t i = 0; i < samples.Count; ++i)
+  {
+    samples.Curvature[3 * i + i % 3] = bad[i % 5];
+  }
+  for (float value : FastNoise<3>(parameters, samples, Steering::Vectors))
+  {
+    ASSERT_TRUE(std::isfinite(value));
+  }
+  // Beyond the clamp but not beyond sense: isotropic, as the reference.
+  samples = RandomSamples(300, 30.0, 1e6, 8);
+  ExpectReference<3>("3D curvature beyond 1", parameters, samples, Steering::Vectors);
+}
+
+TEST(SteerableNoise, TakesPlacesThatAreNotFinite)
+{
+  for (bool variant : { false, true })
+  {
+    NoiseParameters parameters;
+    parameters.Motion = variant;
+    RandomSamples samples(300, 30.0, 0.1, 8);
+    const std::vector<float> healthy = FastNoise<3>(parameters, samples, Steering::Vectors);
+    const double bad[3] = { std::numeric_limits<double>::quiet_NaN(),
+      std::numeric_limits<double>::infinity(), -1e300 };
+    for (int i = 0; i < 30; ++i)
+    {
+      samples.Positions[30 * i + i % 2] = bad[i % 3];
+    }
+    const std::vector<float> noise = FastNoise<3>(parameters, samples, Steering::Vectors);
+    for (std::size_t i = 0; i < samples.Count; ++i)
+    {
+      if (i % 10 == 0)
+      {
+        EXPECT_TRUE(std::isfinite(noise[i])) << i;
+      }
+      else
+      {
+        EXPECT_EQ(noise[i], healthy[i]) << "a neighbour changed, " << i;
+      }
+    }
+  }
+}
+
+TEST(SteerableNoise, MasksStagnantFlow)
+{
+  NoiseParameters parameters;
+  parameters.FollowCurvature = false;
+  for (std::int64_t target : SimdLevels())
+  {
+    const SimdLevel level(target);
+    RandomSamples samples(777, 30.0, 0.0, 8);
+    samples.Vectors[0] = samples.Vectors[1] = samples.Vectors[2] = 0.0f;
+    samples.Vectors[3] = std::numeric_limits<float>::quiet_NaN();
+    parameters.MaskThreshold = 0.0;
+    const std::vector<float> noise = FastNoise<3>(parameters, samples, Steering::Vectors);
+    parameters.MaskThreshold = 1.2;
+    EvaluationCounts counts;
+    const std::vector<float> masked = FastNoise<3>(parameters, samples, Steering::Vectors, &counts);
+    std::size_t stagnant = 0;
+    for (std::size_t i = 0; i < samples.Count; ++i)
+    {
+      // What has no length moves nowhere.
+      const double length = samples.Get<3>(samples.Vectors, i).norm();
+      const bool expected = !(length > 1.2);
+      stagnant += expected;
+      ASSERT_EQ(masked[i], expected ? 0.0f : noise[i]) << i;
+    }
+    EXPECT_EQ(counts.Stagnant, stagnant);
+    EXPECT_EQ(counts.Degenerate, 0u) << "counted once, as stagnant";
+    EXPECT_GT(stagnant, 50u);
+  }
+}
+
+TEST(SteerableNoise, LooksAtThePlaneOnlyInThePlane)
+{
+  const NoiseParameters parameters;
+  RandomSamples samples(300, 30.0, 0.2, 8);
+  const std::vector<float> noise = FastNoise<2>(parameters, samples, Steering::Vectors);
+  for (std::size_t i = 0; i < samples.Count; ++i)
+  {
+    samples.Vectors[3 * i + 2] = std::numeric_limits<float>::quiet_NaN();
+    samples.Positions[3 * i + 2] = 1e300;
+    samples.Curvature[3 * i + 2] = 1e20f;
+  }
+  EXPECT_EQ(FastNoise<2>(parameters, samples, Steering::Vectors), noise);
+}
+
+TEST(SteerableNoise, DoesNotKnowTheSenseOfTheVector)
+{
+  NoiseParameters parameters;
+  RandomSamples samples(300, 30.0, 0.2, 8);
+  const std::vector<float> noise = FastNoise<3>(parameters, samples, Steering::Vectors);
+  for (float& x : samples.Vectors)
+  {
+    x = -x;
+  }
+  EXPECT_LE(LargestDifference(FastNoise<3>(parameters, samples, Steering::Vectors), noise), 1e-6);
+}
+
+TEST(SteerableNoise, RefusesWhatItCannotDo)
+{
+  EXPECT_THROW(SteerableNoise(NoiseParameters(), 1), std::invalid_argument);
+  EXPECT_THROW(SteerableNoise(NoiseParameters(), 4), std::invalid_argument);
+  NoiseParameters wrong;
+  wrong.Quality = 9;
+  EXPECT_THROW(SteerableNoise(wrong, 2), std::invalid_argument);
+  const float values[6] = { 1, 2, 3, 4, 5, 6 };
+  const double place[3] = { 0, 0, 0 };
+  const ContiguousReader<float, 3> vectors(values);
+  const ContiguousReader<float, 6> tensors(values);
+  const ContiguousReader<double, 3> positions(place);
+  float noise = 0.0f;
+  const SteerableNoise plane(NoiseParameters(), 2);
+  const SteerableNoise space(NoiseParameters(), 3);
+  Field field;
+  EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
+  field.Vectors = &vectors;
+  field.Tensors = &tensors;
+  EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
+  field.Tensors = nullptr;
+  field.Normals = &vectors;
+  EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
+  EXPECT_THROW(space.EvaluateImage(ImageGrid(), field, 0, 1, &noise), std::invalid_argument);
+  field.Normals = nullptr;
+  EXPECT_NO_THROW(space.EvaluateImage(ImageGrid(), field, 0, 1, &noise));
+  EXPECT_NO_THROW(space.EvaluatePoints(positions, field, 0, 0, nullptr)) << "nothing to do";
+}
+
+TEST(SteerableNoise, ValidatesItsParameters)
+{
+  using P = NoiseParameters;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  struct Case
+  {
+    const char* Name;
+    std::function<void(P&)> Change;
+  };
+  const std::vector<Case> refused = {
+    { "FeatureSize", [](P& p) { p.FeatureSize = 0.0; } },
+    { "FeatureSize", [](P& p) { p.FeatureSize = -1.0; } },
+    { "FeatureSize", [=](P& p) { p.FeatureSize = nan; } },
+    { "FeatureSize", [=](P& p) { p.FeatureSize = infinity; } },
+    { "Quality", [](P& p) { p.Quality = -1; } },
+    { "Quality", [](P& p) { p.Quality = 9; } },
+    { "MinimumEigenvalue", [](P& p) { p.MinimumEigenvalue = 0.0; } },
+    { "MinimumEigenvalue", [](P& p) { p.MinimumEigenvalue = 1.5; } },
+    { "MinimumEigenvalue", [=](P& p) { p.MinimumEigenvalue = nan; } },
+    { "EigenvalueSum", [](P& p) { p.EigenvalueSum = 1.9; } },
+    { "EigenvalueSum", [](P& p) { p.EigenvalueSum = 17.0; } },
+    { "EigenvalueSum", [=](P& p) { p.EigenvalueSum = nan; } },
+    { "EigenvalueSum",
+      [](P& p)
+      {
+        p.EigenvalueSum = 6.0;
+        p.Normalize = Normalization::WeightSum;
+      } },
+    { "Strength", [](P& p) { p.Strength = -0.1; } },
+    { "Strength", [](P& p) { p.Strength = 1.1; } },
+    { "Strength", [=](P& p) { p.Strength = nan; } },
+    { "ReferenceMagnitude",
+      [](P& p)
+      {
+        p.StrengthBy = StrengthMode::Magnitude;
+        p.ReferenceMagnitude = 0.0;
+      } },
+    { "ReferenceMagnitude",
+      [=](P& p)
+      {
+        p.StrengthBy = StrengthMode::Magnitude;
+        p.ReferenceMagnitude = nan;
+      } },
+    { "MaskThreshold", [](P& p) { p.MaskThreshold = -1.0; } },
+    { "MaskThreshold", [=](P& p) { p.MaskThreshold = nan; } },
+    { "Density", [](P& p) { p.Density = 0.0; } },
+    { "Density", [](P& p) { p.Density = 1.01; } },
+    { "Phase", [=](P& p) { p.Phase = nan; } },
+    { "Phase", [=](P& p) { p.Phase = infinity; } },
+    { "Speed", [](P& p) { p.Speed = 4.1; } },
+    { "Speed", [](P& p) { p.Speed = -5.0; } },
+    { "Speed", [=](P& p) { p.Speed = nan; } },
+    { "Octaves", [](P& p) { p.Octaves = 0; } },
+    { "Octaves", [](P& p) { p.Octaves = 17; } },
+    { "Lacunarity", [](P& p) { p.Lacunarity = 0.5; } },
+    { "Lacunarity", [](P& p) { p.Lacunarity = 9.0; } },
+    { "Gain", [](P& p) { p.Gain = -0.1; } },
+    { "Gain", [](P& p) { p.Gain = 1.1; } },
+    { "Period", [](P& p) { p.Period[0] = -1; } },
+    { "Period", [](P& p) { p.Period[2] = -5; } },
+    { "Period",
+      [](P& p)
+      {
+        p.Period[1] = 4;
+        p.Grid = Lattice::Simplicial;
+      } },
+    { "Period", // 2^10 cells, times 8^15 in the last octave: more than an index holds
+      [](P& p)
+      {
+        p.Period[0] = 1024;
+        p.Octaves = 16;
+        p.Lacunarity = 8.0;
+      } },
+    { "LatticeWindow", // surflets without any bound
+      [](P& p)
+      {
+        p.LatticeWindow = false;
+        p.AnisotropicWeight = false;
+      } },
+    { "Lacunarity",
+      [](P& p)
+      {
+        p.Period[1] = 4;
+        p.Octaves = 2;
+        p.Lacunarity = 2.5;
+      } },
+  };
+  for (const Case& wrong : refused)
+  {
+    P parameters;
+    wrong.Change(parameters);
+    try
+    {
+      parameters.Validate();
+      ADD_FAILURE() << wrong.Name << " was accepted";
+    }
+    catch (const std::invalid_argument& error)
+    {
+      EXPECT_NE(std::string(error.what()).find(wrong.Name), std::string::npos) << error.what();
+    }
+    EXPECT_THROW(SteerableNoise(parameters, 2), std::invalid_argument);
+  }
+  EXPECT_NO_THROW(P().Validate());
+  // The ends of the ranges belong to them.
+  const std::vector<std::function<void(P&)>> accepted = { [](P& p) { p.Quality = 0; },
+    [](P& p) { p.Quality = 8; }, [](P& p) { p.MinimumEigenvalue = 1.0; },
+    [](P& p) { p.EigenvalueSum = 2.0; }, [](P& p) { p.EigenvalueSum = 16.0; },
+    [](P& p) { p.Strength = 0.0; }, [](P& p) { p.Density = 1.0; }, [](P& p) { p.Speed = -4.0; },
+    [](P& p) { p.Phase = -123.0; }, [](P& p) { p.Octaves = 16; }, [](P& p) { p.Gain = 0.0; },
+    [](P& p) { p.Lacunarity = 1.0; },
+    [](P& p) {
+      p.Period = { 1, 1, 1 };
+    },
+    [](P& p) { p.Normalize = Normalization::WeightSum; } };
+  for (const auto& change : accepted)
+  {
+    P parameters;
+    change(parameters);
+    EXPECT_NO_THROW(parameters.Validate());
+  }
+}

@@ -60,7 +60,7 @@ NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field
   {
     OctaveSetup octave;
     octave.CellsPerUnit = frequency / p.FeatureSize;
-    octave.FeatureSize = static_cast<float>(p.FeatureSize / frequency);
+    octave.CellSize = static_cast<float>(1.0 / frequency);
     octave.Amplitude = static_cast<float>(amplitude);
     octave.Seed = HashOfSeed(p.Seed + i);
     for (int axis = 0; axis < 3; ++axis)

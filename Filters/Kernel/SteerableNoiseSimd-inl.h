@@ -52,6 +52,12 @@ HWY_INLINE V HighPart(V v)
   return hn::And(v, hn::BitCast(DF(), hn::Set(DU(), HighPartMask)));
 }
 
+/// Bounds of loops over corners, whatever the number is.
+HWY_INLINE int ToCorner(float place)
+{
+  return static_cast<int>(std::min(1000.0f, std::max(-1000.0f, place)));
+}
+
 HWY_INLINE float LeastLane(V v)
 {
   return hn::GetLane(hn::MinOfLanes(DF(), v));
@@ -443,8 +449,7 @@ struct Frame
   V BendAcross;
   V Sense;
 
-  HWY_INLINE Frame(
-    const NoiseSetup& setup, const MetricBlock& block, std::size_t i, float featureSize)
+  HWY_INLINE Frame(const NoiseSetup& setup, const MetricBlock& block, std::size_t i, float cellSize)
     : Along(Load(block.Along + i))
     , Across(Load(block.Across + i))
     , Second(Across)
@@ -475,17 +480,16 @@ struct Frame
     }
     if (setup.Curved)
     {
-      this->ApplyCurvature(block, i, featureSize);
+      this->ApplyCurvature(block, i, cellSize);
     }
   }
 
   /// As steerable::ApplyCurvature.
-  HWY_INLINE void ApplyCurvature(const MetricBlock& block, std::size_t i, float featureSize)
+  HWY_INLINE void ApplyCurvature(const MetricBlock& block, std::size_t i, float cellSize)
   {
     for (int axis = 0; axis < N; ++axis)
     {
-      this->Bend[axis] =
-        hn::Mul(hn::Mul(Load(block.Bend[axis] + i), Const(featureSize)), this->Sense);
+      this->Bend[axis] = hn::Mul(hn::Mul(Load(block.Bend[axis] + i), Const(cellSize)), this->Sense);
     }
     const V parallel = Dot(this->Bend, this->U);
     for (int axis = 0; axis < N; ++axis)
@@ -740,8 +744,8 @@ private:
     V lowest;
     V highest;
     this->GetExtent(axis, lowest, highest);
-    low = static_cast<int>(std::ceil(LeastLane(lowest)));
-    high = static_cast<int>(std::floor(GreatestLane(highest)));
+    low = ToCorner(std::ceil(LeastLane(lowest)));
+    high = ToCorner(std::floor(GreatestLane(highest)));
   }
 
   /// Coefficients of q along a row that are the same for all rows.
@@ -895,10 +899,8 @@ private:
     {
       return;
     }
-    const int first =
-      static_cast<int>(std::ceil(LeastLane(hn::IfThenElse(empty, Const(1e9f), low))));
-    const int last =
-      static_cast<int>(std::floor(GreatestLane(hn::IfThenElse(empty, Const(-1e9f), high))));
+    const int first = ToCorner(std::ceil(LeastLane(hn::IfThenElse(empty, Const(1e9f), low))));
+    const int last = ToCorner(std::floor(GreatestLane(hn::IfThenElse(empty, Const(-1e9f), high))));
     if (first > last)
     {
       return;
@@ -1175,7 +1177,7 @@ HWY_INLINE void AddOctave(const NoiseSetup& setup, const OctaveSetup& octave, Me
   {
     V f[N];
     setCells(i, f);
-    const Frame<N> frame(setup, block, i, octave.FeatureSize);
+    const Frame<N> frame(setup, block, i, octave.CellSize);
     std::uint64_t corner = 0;
     V noise = SumSurflets<N, Variant>(setup, frame, f, corners, corner);
     visited += corner * std::min(Lanes, count - i);
@@ -1380,19 +1382,22 @@ HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t count, int axis,
 
 /// Splits tuples of 3 into the bend; what is not finite or beyond sense becomes 0.
 template <int N>
-HWY_NOINLINE void CopyCurvature(const float* tuples, std::size_t count, MetricBlock& block)
+HWY_NOINLINE void CopyCurvature(
+  const NoiseSetup& setup, const float* tuples, std::size_t count, MetricBlock& block)
 {
   for (std::size_t i = 0; i < count; ++i)
   {
-    float length2 = 0.0f;
+    double bend[N];
+    double length2 = 0.0;
     for (int axis = 0; axis < N; ++axis)
     {
-      length2 += tuples[3 * i + axis] * tuples[3 * i + axis];
+      bend[axis] = tuples[3 * i + axis] * setup.Parameters.FeatureSize;
+      length2 += bend[axis] * bend[axis];
     }
-    const bool good = length2 < 1e30f;
+    const bool good = length2 < 1e30;
     for (int axis = 0; axis < N; ++axis)
     {
-      block.Bend[axis][i] = good ? tuples[3 * i + axis] : 0.0f;
+      block.Bend[axis][i] = good ? static_cast<float>(bend[axis]) : 0.0f;
     }
   }
 }
@@ -1571,8 +1576,7 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
     for (int axis = 0; axis < N; ++axis)
     {
       // A place that is not finite is cell 0: it must not spoil its neighbours' walk.
-      p[axis] =
-        hn::IfThenElseZero(hn::Lt(hn::Abs(p[axis]), hn::Set(DD(), 4503599627370496.0)), p[axis]);
+      p[axis] = hn::IfThenElseZero(hn::Lt(hn::Abs(p[axis]), hn::Set(DD(), FarthestCell)), p[axis]);
       VD cell = hn::Floor(hn::Add(p[axis], rounding));
       hn::StoreU(hn::DemoteTo(DFH(), hn::Sub(p[axis], cell)), DFH(), block.Fraction[axis] + i);
       if (octave.Period[axis] > 0)
@@ -1593,12 +1597,16 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
 
 // ---- images -------------------------------------------------------------------------------------
 
-/// Place of sample `index` of a grid axis, in cells of an octave.
+/**
+ * Place of sample `index` of a grid axis, in cells of an octave; 0 where a double no longer tells one
+ * cell from the next.
+ */
 inline double CellPlace(const ImageGrid& grid, int axis, std::int64_t index, double cellsPerUnit)
 {
-  return (grid.Origin[axis] +
-           static_cast<double>(grid.FirstIndex[axis] + index) * grid.Spacing[axis]) *
+  const double place =
+    (grid.Origin[axis] + static_cast<double>(grid.FirstIndex[axis] + index) * grid.Spacing[axis]) *
     cellsPerUnit;
+  return std::abs(place) < FarthestCell ? place : 0.0;
 }
 
 /// Cells around a sample's own that the fast loops can ask for.
@@ -1659,6 +1667,13 @@ struct ImageOctave
   }
 };
 
+/// A curvature per world unit in cells of the first octave, no larger than floats can square.
+inline float InCells(double curvature, const NoiseSetup& setup)
+{
+  const double inCells = curvature * setup.Parameters.FeatureSize;
+  return static_cast<float>(std::min(1e15, std::max(-1e15, inCells)));
+}
+
 template <int N>
 void ImageCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field& field,
   const std::vector<float>& scaleX, std::int64_t i0, std::size_t count, std::int64_t j,
@@ -1708,8 +1723,8 @@ void ImageCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field&
       setup, field, flat(i0, axis == 1 ? low : j, axis == 2 ? low : k), count, block, before);
     Directions<N>(
       setup, field, flat(i0, axis == 1 ? high : j, axis == 2 ? high : k), count, block, after);
-    const auto scale =
-      static_cast<float>(1.0 / (static_cast<double>(high - low) * grid.Spacing[axis]));
+    const float scale =
+      InCells(1.0 / (static_cast<double>(high - low) * grid.Spacing[axis]), setup);
     AddDerivative<N>(block, count, axis, { before[0], before[1], before[2] },
       { after[0], after[1], after[2] }, &scale, false);
   }
@@ -1735,8 +1750,8 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
   std::vector<float> scaleX;
   if (setup.Curved)
   {
-    scaleX.assign(nx + Lanes, static_cast<float>(0.5 / grid.Spacing[0]));
-    scaleX[0] = scaleX[nx - 1] = static_cast<float>(1.0 / grid.Spacing[0]);
+    scaleX.assign(nx + Lanes, InCells(0.5 / grid.Spacing[0], setup));
+    scaleX[0] = scaleX[nx - 1] = InCells(1.0 / grid.Spacing[0], setup);
   }
 
   for (std::size_t row = rowBegin; row < rowEnd; ++row)
@@ -1859,7 +1874,7 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     ClearTail<N>(*block, count);
     if (setup.Curved)
     {
-      CopyCurvature<N>(field.Curvature->Read(first, count, block->Tuples), count, *block);
+      CopyCurvature<N>(setup, field.Curvature->Read(first, count, block->Tuples), count, *block);
     }
     Metrics<N>(setup, field, first, count, *block);
     if (setup.Octaves.size() > 1)

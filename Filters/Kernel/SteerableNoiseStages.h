@@ -21,6 +21,9 @@ constexpr std::size_t BlockSize = 256;
 /// A block with one sample to either side, and room for a whole SIMD register behind.
 constexpr std::size_t BlockRoom = BlockSize + 2 + 32;
 
+/// Places beyond this many cells, and those that are not finite, count as 0: 2^50.
+constexpr double FarthestCell = 1125899906842624.0;
+
 /// Keeps the sign, the exponent and 16 leading bits of a float.
 constexpr std::uint32_t HighPartMask = 0xFFFFFF00u;
 
@@ -40,7 +43,8 @@ inline float LowPart(double value)
 struct OctaveSetup
 {
   double CellsPerUnit;
-  float FeatureSize;
+  /// Side of its cells in those of the first octave.
+  float CellSize;
   float Amplitude;
   std::uint32_t Seed;
   std::array<std::int64_t, 3> Period;
@@ -87,7 +91,7 @@ struct MetricBlock
   alignas(64) float Along[BlockRoom];
   alignas(64) float Across[BlockRoom];
   alignas(64) float Second[BlockRoom];
-  /// Curvature of the streamline in 1 / world units.
+  /// Curvature of the streamline in 1 / cells of the first octave.
   alignas(64) float Bend[3][BlockRoom];
   /// Length of the vector (Frobenius norm of the tensor).
   alignas(64) float Length[BlockRoom];

@@ -28,6 +28,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 namespace noise
@@ -172,6 +173,10 @@ void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
     for (int world = 0; world < 3; ++world)
     {
       start += this->InAxes[i][world] * origin[world];
+    }
+    if (!std::isfinite(start) || !std::isfinite(spacing[axis]))
+    {
+      throw std::invalid_argument("The image's origin, spacing or direction is not finite.");
     }
     this->Grid.Origin[i] = start + half * spacing[axis];
     this->Grid.Spacing[i] = spacing[axis];
@@ -349,7 +354,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
 void Samples::ComputeCurvature()
 {
   const vtkIdType count = this->GetNumberOfSamples();
-  if (this->IsGrid || count == 0 || !this->Field.Vectors)
+  if (this->IsGrid || count == 0 || !this->Field.Vectors || this->DataSet->GetNumberOfCells() == 0)
   {
     return;
   }

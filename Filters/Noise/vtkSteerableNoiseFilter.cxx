@@ -102,13 +102,13 @@ struct Extremes
 
   double GetDiagonal() const
   {
-    double sum = 0.0;
+    double length[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      const double length = -this->Bounds[3 + axis] - this->Bounds[axis];
-      sum += std::isfinite(length) ? length * length : 0.0;
+      length[axis] = -this->Bounds[3 + axis] - this->Bounds[axis];
+      length[axis] = std::isfinite(length[axis]) ? length[axis] : 0.0;
     }
-    return std::sqrt(sum);
+    return std::hypot(length[0], length[1], length[2]);
   }
 
   /// The mean has three digits, so that the order of its sum over ranks does not show.

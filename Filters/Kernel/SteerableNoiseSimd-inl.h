@@ -401,12 +401,20 @@ private:
   VU Row;
 };
 
+// The walk lives in registers only if it is one function; instrumented builds take too long over that.
+#undef WALK_INLINE
+#ifdef STEERABLENOISE_INSTRUMENTED
+#define WALK_INLINE inline
+#else
+#define WALK_INLINE HWY_INLINE
+#endif
+
 // ---- the sum over corners -----------------------------------------------------------------------
 
 struct Sums
 {
   // Written out, since the compiler's own constructor would not be of this SIMD level.
-  HWY_INLINE Sums()
+  WALK_INLINE Sums()
     : Noise(hn::Zero(DF()))
     , Weight(hn::Zero(DF()))
     , Variance(hn::Zero(DF()))
@@ -417,7 +425,7 @@ struct Sums
   V Variance;
 };
 
-HWY_INLINE V Normalized(const NoiseSetup& setup, const Sums& sums)
+WALK_INLINE V Normalized(const NoiseSetup& setup, const Sums& sums)
 {
   switch (setup.Parameters.Normalize)
   {
@@ -449,7 +457,7 @@ struct Frame
   V BendAcross;
   V Sense;
 
-  HWY_INLINE Frame(const NoiseSetup& setup, const MetricBlock& block, std::size_t i, float cellSize)
+  WALK_INLINE Frame(const NoiseSetup& setup, const MetricBlock& block, std::size_t i, float cellSize)
     : Along(Load(block.Along + i))
     , Across(Load(block.Across + i))
     , Second(Across)
@@ -485,7 +493,7 @@ struct Frame
   }
 
   /// As steerable::ApplyCurvature.
-  HWY_INLINE void ApplyCurvature(const MetricBlock& block, std::size_t i, float cellSize)
+  WALK_INLINE void ApplyCurvature(const MetricBlock& block, std::size_t i, float cellSize)
   {
     for (int axis = 0; axis < N; ++axis)
     {
@@ -519,7 +527,7 @@ struct Frame
  * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix.
  */
 template <int N, class Corners>
-HWY_INLINE V SumOverCell(const Frame<N>& frame, const V (&f)[N], Corners& corners)
+WALK_INLINE V SumOverCell(const Frame<N>& frame, const V (&f)[N], Corners& corners)
 {
   // G = b I + (k - b) u uT
   const V c = hn::Sub(frame.Along, frame.Across);
@@ -593,7 +601,7 @@ template <int N, bool Variant, class Corners>
 class Walk
 {
 public:
-  HWY_INLINE Walk(const NoiseSetup& setup, const Frame<N>& frame, const V (&f)[N], Corners& corners)
+  WALK_INLINE Walk(const NoiseSetup& setup, const Frame<N>& frame, const V (&f)[N], Corners& corners)
     : Setup(setup)
     , Params(setup.Parameters)
     , F(frame)
@@ -618,7 +626,7 @@ public:
     this->SetReach();
   }
 
-  HWY_INLINE V Evaluate(std::uint64_t& visited)
+  WALK_INLINE V Evaluate(std::uint64_t& visited)
   {
     int zLow = 0;
     int zHigh = 0;
@@ -646,7 +654,7 @@ public:
 
 private:
   /// Half-length along the flow and half-width across it, travel included.
-  HWY_INLINE void SetReach()
+  WALK_INLINE void SetReach()
   {
     const float support = this->Setup.Support;
     float along = std::sqrt(support);
@@ -685,7 +693,7 @@ private:
   }
 
   /// Bounds of the reach along one index axis of the lattice, as offsets from the sample's cell.
-  HWY_INLINE void GetExtent(int axis, V& low, V& high) const
+  WALK_INLINE void GetExtent(int axis, V& low, V& high) const
   {
     // w: how the index grows with the place.
     V w[N];
@@ -739,7 +747,7 @@ private:
   }
 
   /// The same as whole numbers, for all lanes together.
-  HWY_INLINE void GetRange(int axis, int& low, int& high) const
+  WALK_INLINE void GetRange(int axis, int& low, int& high) const
   {
     V lowest;
     V highest;
@@ -749,7 +757,7 @@ private:
   }
 
   /// Coefficients of q along a row that are the same for all rows.
-  HWY_INLINE void SetQuadratic()
+  WALK_INLINE void SetQuadratic()
   {
     const V c = hn::Sub(this->F.Along, this->F.Across);
     const V cu = hn::Mul(c, Dot(this->Step, this->F.U));
@@ -770,7 +778,7 @@ private:
   }
 
   /// Offset of the corner with ox = 0 of a row.
-  HWY_INLINE void SetRow(int oy, int oz)
+  WALK_INLINE void SetRow(int oy, int oz)
   {
     if constexpr (Variant)
     {
@@ -807,7 +815,7 @@ private:
   }
 
   /// Interval of q < Support: the roots of a quadratic.
-  HWY_INLINE void CutByEllipsoid(V& low, V& high) const
+  WALK_INLINE void CutByEllipsoid(V& low, V& high) const
   {
     const V s = Dot(this->RowV, this->F.U);
     V q = hn::Mul(this->F.Across, Dot(this->RowV, this->RowV));
@@ -831,7 +839,7 @@ private:
    * Interval of a bent surflet: a slab along the flow, then a tube around the parabola, whose sag is
    * known within a band once the slab has bounded the distance along the flow.
    */
-  HWY_INLINE void CutByTube(V& low, V& high) const
+  WALK_INLINE void CutByTube(V& low, V& high) const
   {
     const V one = Const(1.0f);
     const V s0 = Dot(this->RowV, this->F.U);
@@ -877,7 +885,7 @@ private:
     high = hn::IfThenElse(hn::Lt(discriminant, Const(0.0f)), Const(-1e9f), high);
   }
 
-  HWY_INLINE void VisitRow(int oy, int oz, std::uint64_t& visited)
+  WALK_INLINE void VisitRow(int oy, int oz, std::uint64_t& visited)
   {
     this->SetRow(oy, oz);
     V low = this->BoxLow;
@@ -925,7 +933,7 @@ private:
     }
   }
 
-  HWY_INLINE V GetWindow(const V (&v)[N]) const
+  WALK_INLINE V GetWindow(const V (&v)[N]) const
   {
     if (!this->Params.LatticeWindow)
     {
@@ -951,7 +959,7 @@ private:
     }
   }
 
-  HWY_INLINE void AddSurflet(int ox)
+  WALK_INLINE void AddSurflet(int ox)
   {
     const V offset = Const(static_cast<float>(ox));
     V v[N];
@@ -1114,7 +1122,7 @@ private:
     }
   }
 
-  HWY_INLINE void AddStreak(VU hash, V amplitude, V window, V s, V across2)
+  WALK_INLINE void AddStreak(VU hash, V amplitude, V window, V s, V across2)
   {
     const V sigma = hn::Neg(hn::Mul(s, this->RootAlong));
     const V across = hn::Sqrt(hn::Max(across2, Const(0.0f)));
@@ -1154,7 +1162,7 @@ private:
 };
 
 template <int N, bool Variant, class Corners>
-HWY_INLINE V SumSurflets(const NoiseSetup& setup, const Frame<N>& frame, const V (&f)[N],
+WALK_INLINE V SumSurflets(const NoiseSetup& setup, const Frame<N>& frame, const V (&f)[N],
   Corners& corners, std::uint64_t& visited)
 {
   if constexpr (!Variant)
@@ -1170,7 +1178,7 @@ HWY_INLINE V SumSurflets(const NoiseSetup& setup, const Frame<N>& frame, const V
 
 /// Adds one octave to the samples of a block whose cells and fractions are set.
 template <int N, bool Variant, class Corners, class SetCells>
-HWY_INLINE void AddOctave(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
+WALK_INLINE void AddOctave(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
   std::size_t count, Corners& corners, std::uint64_t& visited, SetCells&& setCells)
 {
   for (std::size_t i = 0; i < count; i += Lanes)

@@ -1,0 +1,347 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SubbandTiles.h"
+
+#include "LatticeHash.h"
+
+#include <unsupported/Eigen/FFT>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace steerable
+{
+namespace
+{
+
+constexpr double Pi = 3.14159265358979323846;
+using Complex = std::complex<double>;
+
+// The frequency of bin `index`: 0, 1, ..., then the negative ones.
+int SignedFrequency(int index, int size)
+{
+  return 2 * index < size ? index : index - size;
+}
+
+// In place, size*size values, x fastest. Divides by size^2.
+void InverseTransform(std::vector<Complex>& values, int size)
+{
+  Eigen::FFT<double> fft;
+  std::vector<Complex> line(size), transformed(size);
+  for (int y = 0; y < size; ++y)
+  {
+    Complex* row = values.data() + static_cast<std::size_t>(y) * size;
+    // Bands leave most rows empty, and the transform of zero is zero.
+    if (std::all_of(row, row + size, [](const Complex& value) { return value == 0.0; }))
+    {
+      continue;
+    }
+    fft.inv(transformed.data(), row, size);
+    std::copy(transformed.begin(), transformed.end(), row);
+  }
+  for (int x = 0; x < size; ++x)
+  {
+    for (int y = 0; y < size; ++y)
+    {
+      line[y] = values[static_cast<std::size_t>(y) * size + x];
+    }
+    fft.inv(transformed.data(), line.data(), size);
+    for (int y = 0; y < size; ++y)
+    {
+      values[static_cast<std::size_t>(y) * size + x] = transformed[y];
+    }
+  }
+}
+
+// Two texels per axis, or four, with their weights.
+struct AxisTaps
+{
+  int Count;
+  int Texel[4];
+  float Weight[4];
+};
+
+AxisTaps LocateTaps(TileLookup lookup, double coordinate, int size)
+{
+  const double position = (coordinate - std::floor(coordinate)) * size;
+  // A coordinate that is not finite gives NaN, not a read outside the tile.
+  const double cell = position >= 0.0 ? std::floor(position) : 0.0;
+  const float t = static_cast<float>(position - cell);
+
+  AxisTaps taps;
+  int first = static_cast<int>(cell);
+  if (lookup == TileLookup::Bilinear)
+  {
+    taps.Count = 2;
+    taps.Weight[0] = 1.0f - t;
+    taps.Weight[1] = t;
+  }
+  else
+  {
+    taps.Count = 4;
+    taps.Weight[0] = 0.5f * t * (t * (2.0f - t) - 1.0f);
+    taps.Weight[1] = 0.5f * (t * t * (3.0f * t - 5.0f) + 2.0f);
+    taps.Weight[2] = 0.5f * t * (t * (4.0f - 3.0f * t) + 1.0f);
+    taps.Weight[3] = 0.5f * t * t * (t - 1.0f);
+    --first;
+  }
+  for (int n = 0; n < taps.Count; ++n)
+  {
+    const int texel = first + n;
+    taps.Texel[n] = texel < 0 ? texel + size : texel < size ? texel : texel - size;
+  }
+  return taps;
+}
+
+// The texels around a point, with their weights.
+struct Neighborhood
+{
+  int Count = 0;
+  const float* Texel[16];
+  float Weight[16];
+};
+
+Neighborhood Gather(const SubbandTiles& tiles, TileLookup lookup, double u, double v)
+{
+  const AxisTaps x = LocateTaps(lookup, u, tiles.Parameters.TileSize);
+  const AxisTaps y = LocateTaps(lookup, v, tiles.Parameters.TileSize);
+  Neighborhood points;
+  for (int b = 0; b < y.Count; ++b)
+  {
+    for (int a = 0; a < x.Count; ++a)
+    {
+      points.Texel[points.Count] = tiles.Texel(x.Texel[a], y.Texel[b]);
+      points.Weight[points.Count] = x.Weight[a] * y.Weight[b];
+      ++points.Count;
+    }
+  }
+  return points;
+}
+
+// Interpolate Width bands from `first` on. Width is known to the compiler, which keeps the sums in
+// vector registers: this is where the time of subband noise goes.
+template <int Width>
+inline void Interpolate(const Neighborhood& points, int first, float* bands)
+{
+  float sum[Width] = {};
+  for (int n = 0; n < points.Count; ++n)
+  {
+    const float* texel = points.Texel[n] + first;
+    const float weight = points.Weight[n];
+    for (int c = 0; c < Width; ++c)
+    {
+      sum[c] += weight * texel[c];
+    }
+  }
+  for (int c = 0; c < Width; ++c)
+  {
+    bands[c] = sum[c];
+  }
+}
+
+void InterpolateAll(const Neighborhood& points, int components, float* bands)
+{
+  // Components are a multiple of two.
+  int c = 0;
+  for (; c + 16 <= components; c += 16)
+  {
+    Interpolate<16>(points, c, bands + c);
+  }
+  for (; c + 4 <= components; c += 4)
+  {
+    Interpolate<4>(points, c, bands + c);
+  }
+  for (; c < components; c += 2)
+  {
+    Interpolate<2>(points, c, bands + c);
+  }
+}
+
+// In four interleaved partial sums, which the compiler may compute side by side.
+float Dot(const float* a, const float* b, int count)
+{
+  float partial[4] = {};
+  int c = 0;
+  for (; c + 4 <= count; c += 4)
+  {
+    for (int lane = 0; lane < 4; ++lane)
+    {
+      partial[lane] += a[c + lane] * b[c + lane];
+    }
+  }
+  for (; c < count; ++c)
+  {
+    partial[0] += a[c] * b[c];
+  }
+  return (partial[0] + partial[1]) + (partial[2] + partial[3]);
+}
+
+} // namespace
+
+Complex NoiseSpectrum(int kx, int ky, std::uint32_t seed, std::uint32_t realization)
+{
+  if (kx == 0 && ky == 0)
+  {
+    return 1.0;
+  }
+  // Hash one of k and -k; the other is its conjugate, so that the noise is real.
+  const bool mirrored = ky < 0 || (ky == 0 && kx < 0);
+  const int sign = mirrored ? -1 : 1;
+  const std::uint32_t bits = HashCorner(static_cast<std::uint32_t>(sign * kx),
+    static_cast<std::uint32_t>(sign * ky), realization, seed);
+  return std::polar(1.0, sign * 2.0 * Pi * HashToUnit(bits));
+}
+
+std::vector<Complex> SynthesizeNoise(int size, std::uint32_t seed, std::uint32_t realization,
+  const std::function<double(int kx, int ky)>& response)
+{
+  std::vector<Complex> values(static_cast<std::size_t>(size) * size);
+  std::size_t bin = 0;
+  for (int y = 0; y < size; ++y)
+  {
+    for (int x = 0; x < size; ++x, ++bin)
+    {
+      const int kx = SignedFrequency(x, size);
+      const int ky = SignedFrequency(y, size);
+      const double gain = response(kx, ky);
+      if (gain != 0.0)
+      {
+        Complex phase = NoiseSpectrum(kx, ky, seed, realization);
+        // At the Nyquist frequency k and -k differ by the sign of one component only: make both real.
+        if (2 * kx == -size || 2 * ky == -size)
+        {
+          const Complex shared = NoiseSpectrum(std::abs(kx), std::abs(ky), seed, realization);
+          phase = shared.real() < 0.0 ? -1.0 : 1.0;
+        }
+        values[bin] = gain * size * phase;
+      }
+    }
+  }
+  InverseTransform(values, size);
+  return values;
+}
+
+SubbandTiles MakeSubbandTiles(const SubbandParameters& parameters)
+{
+  parameters.Validate();
+  const int components = parameters.Components();
+
+  SubbandTiles tiles;
+  tiles.Parameters = parameters;
+  tiles.Values.resize(
+    static_cast<std::size_t>(parameters.TileSize) * parameters.TileSize * components);
+  for (int j = 0; j < parameters.Scales; ++j)
+  {
+    for (int i = 0; i < parameters.Orientations; ++i)
+    {
+      const std::vector<Complex> band =
+        SynthesizeNoise(parameters.TileSize, parameters.Seed, parameters.Realization,
+          [&](int kx, int ky) { return SubbandFilter(parameters, i, j, kx, ky); });
+      float* value = tiles.Values.data() + j * parameters.Orientations + i;
+      for (std::size_t texel = 0; texel < band.size(); ++texel)
+      {
+        value[texel * components] = static_cast<float>(band[texel].real());
+      }
+    }
+  }
+  return tiles;
+}
+
+QuantizedSubbandTiles Quantize(const SubbandTiles& tiles)
+{
+  const std::size_t components = tiles.Parameters.Components();
+  const std::size_t texels = tiles.Values.size() / components;
+
+  QuantizedSubbandTiles quantized;
+  quantized.Parameters = tiles.Parameters;
+  quantized.Values.resize(tiles.Values.size());
+  quantized.Range.resize(components);
+  for (std::size_t c = 0; c < components; ++c)
+  {
+    double power = 0.0;
+    for (std::size_t texel = 0; texel < texels; ++texel)
+    {
+      const double value = tiles.Values[texel * components + c];
+      power += value * value;
+    }
+    const double range = 4.0 * std::sqrt(power / static_cast<double>(texels));
+    quantized.Range[c] = static_cast<float>(range);
+    for (std::size_t texel = 0; texel < texels; ++texel)
+    {
+      const double level = 127.5 * (tiles.Values[texel * components + c] / range + 1.0);
+      quantized.Values[texel * components + c] =
+        static_cast<std::uint8_t>(std::lround(std::clamp(level, 0.0, 255.0)));
+    }
+  }
+  return quantized;
+}
+
+SubbandTiles BlendTiles(
+  const std::vector<const SubbandTiles*>& tiles, const std::vector<double>& weights)
+{
+  if (tiles.empty() || tiles.size() != weights.size())
+  {
+    throw std::invalid_argument("Subband noise: blending needs one weight for each tile.");
+  }
+  double power = 0.0;
+  for (std::size_t m = 0; m < tiles.size(); ++m)
+  {
+    power += weights[m] * weights[m];
+    if (tiles[m]->Values.size() != tiles[0]->Values.size() ||
+      tiles[m]->Parameters.Components() != tiles[0]->Parameters.Components())
+    {
+      throw std::invalid_argument("Subband noise: tiles to blend must have the same shape.");
+    }
+  }
+  if (!(power > 0.0))
+  {
+    throw std::invalid_argument("Subband noise: one blending weight at least must not be zero.");
+  }
+
+  SubbandTiles blend;
+  blend.Parameters = tiles[0]->Parameters;
+  blend.Values.assign(tiles[0]->Values.size(), 0.0f);
+  for (std::size_t m = 0; m < tiles.size(); ++m)
+  {
+    const float weight = static_cast<float>(weights[m] / std::sqrt(power));
+    const float* value = tiles[m]->Values.data();
+    for (std::size_t n = 0; n < blend.Values.size(); ++n)
+    {
+      blend.Values[n] += weight * value[n];
+    }
+  }
+  return blend;
+}
+
+std::array<double, 4> LoopWeights(double phase)
+{
+  const double angle = 2.0 * Pi * phase;
+  const double scale = std::sqrt(0.5);
+  return { scale * std::cos(angle), scale * std::sin(angle), scale * std::cos(2.0 * angle),
+    scale * std::sin(2.0 * angle) };
+}
+
+std::array<double, 2> TileOffset(std::uint32_t index, std::uint32_t seed)
+{
+  return { HashToUnit(HashCorner(index, 0, 0, seed)), HashToUnit(HashCorner(index, 1, 0, seed)) };
+}
+
+void SampleSubbands(const SubbandTiles& tiles, TileLookup lookup, double u, double v, float* bands)
+{
+  InterpolateAll(Gather(tiles, lookup, u, v), tiles.Parameters.Components(), bands);
+}
+
+void SumSubbands(const SubbandTiles& tiles, TileLookup lookup, std::size_t count, const double* uv,
+  const float* weights, float* noise)
+{
+  const int components = tiles.Parameters.Components();
+  float bands[48];
+  for (std::size_t p = 0; p < count; ++p)
+  {
+    SampleSubbands(tiles, lookup, uv[2 * p], uv[2 * p + 1], bands);
+    noise[p] = Dot(bands, weights + p * components, components);
+  }
+}
+
+} // namespace steerable

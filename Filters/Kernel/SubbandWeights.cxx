@@ -1,0 +1,427 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SubbandWeights.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+namespace steerable
+{
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr double Ln2 = 0.693147180559945309417;
+constexpr int MaximumScales = 6;
+
+// Entries of the tables per doubling of q. Weights are right to 3e-6 of the largest, antialiasing
+// to 1e-4.
+constexpr int TargetBits = 8;
+constexpr int FilterBits = 5;
+
+// This many octaves below the pyramid a footprint leaves all of every band, above it nothing.
+constexpr int FilterMarginBelow = 9;
+constexpr int FilterMarginAbove = 4;
+
+struct Eigenvalues
+{
+  double Smaller, Larger;
+};
+
+Eigenvalues EigenvaluesOf(const Eigen::Matrix2d& m)
+{
+  const double mean = 0.5 * (m(0, 0) + m(1, 1));
+  const double radius = std::hypot(0.5 * (m(0, 0) - m(1, 1)), m(0, 1));
+  return { mean - radius, mean + radius };
+}
+
+bool IsFinite(const Eigen::Matrix2d& m)
+{
+  return std::isfinite(m(0, 0)) && std::isfinite(m(0, 1)) && std::isfinite(m(1, 1));
+}
+
+// q's bits as an integer grow with q, linearly between powers of two.
+std::uint64_t BitsOf(double q)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &q, sizeof bits);
+  return bits;
+}
+
+double FromBits(std::uint64_t bits)
+{
+  double q;
+  std::memcpy(&q, &bits, sizeof q);
+  return q;
+}
+
+/**
+ * The least squares fit of a Gaussian by radial profiles. Both residuals take part, as they do in
+ * images, so that a filter that changes nothing gets the factors one; noise has no residuals, so their
+ * factors are dropped.
+ */
+class GaussianFit
+{
+public:
+  explicit GaussianFit(int scales)
+    : Scales(scales)
+  {
+    // From an octave above the finest centre, where bands end, to where no area is left.
+    const int nodes = (scales + 6) * NodesPerOctave;
+    Eigen::MatrixXd profiles(scales + 2, nodes);
+    Eigen::VectorXd area(nodes);
+    this->SquaredRadius.resize(nodes);
+    for (int n = 0; n < nodes; ++n)
+    {
+      const double y = 1.0 - (n + 0.5) / NodesPerOctave;
+      profiles(0, n) = HighResidual(y);
+      for (int j = 0; j < scales; ++j)
+      {
+        profiles(1 + j, n) = RadialFilter(y + j);
+      }
+      profiles(scales + 1, n) = LowResidual(y, scales);
+      this->SquaredRadius(n) = std::exp2(2.0 * y);
+      area(n) = this->SquaredRadius(n) * Ln2 / NodesPerOctave;
+    }
+    const Eigen::MatrixXd weighted = profiles * area.asDiagonal();
+    this->Dual = (weighted * profiles.transpose()).inverse() * weighted;
+  }
+
+  // The factors of the J scales for exp(-q r^2 / 2), r in units of r0.
+  Eigen::VectorXd operator()(double q) const
+  {
+    const Eigen::VectorXd target = (-0.5 * q * this->SquaredRadius.array()).exp();
+    return (this->Dual * target).segment(1, this->Scales);
+  }
+
+private:
+  static constexpr int NodesPerOctave = 48;
+
+  int Scales;
+  Eigen::MatrixXd Dual;
+  Eigen::VectorXd SquaredRadius;
+};
+
+// K is known to the compiler, which keeps the K sums in vector registers.
+template <int K>
+void SumDirections(
+  const double* angularDual, const double* radial, int directions, int scales, double* weights)
+{
+  for (int j = 0; j < scales; ++j)
+  {
+    double sum[K] = {};
+    for (int n = 0; n < directions; ++n)
+    {
+      const double value = radial[n * MaximumScales + j];
+      for (int i = 0; i < K; ++i)
+      {
+        sum[i] += angularDual[n * K + i] * value;
+      }
+    }
+    std::copy(sum, sum + K, weights + j * K);
+  }
+}
+
+// Where the heuristic probes a band, in octaves from its centre, and how much each probe counts.
+struct RadialProbe
+{
+  double Octaves, Weight;
+};
+using RadialProbes = std::vector<RadialProbe>;
+
+RadialProbes ProbesOf(const SubbandWeightParameters& parameters)
+{
+  return parameters.RadialTriple ? RadialProbes{ { -0.5, 0.25 }, { 0.0, 0.5 }, { 0.5, 0.25 } }
+                                 : RadialProbes{ { 0.0, 1.0 } };
+}
+
+// The wanted ring, probed in the bands of each scale.
+Eigen::VectorXd ProbeRing(const RadialProbes& probes, double c, int scales)
+{
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(scales);
+  for (int j = 0; j < scales; ++j)
+  {
+    for (const RadialProbe& probe : probes)
+    {
+      values(j) += probe.Weight * RadialFilter(c - j + probe.Octaves);
+    }
+  }
+  return values;
+}
+
+// The filter exp(-4^c r^2 / 2), r in units of r0. The area of the plane that a probe stands for
+// grows with the square of the radius, and so does its weight.
+Eigen::VectorXd ProbeGaussian(const RadialProbes& probes, double c, int scales)
+{
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(scales);
+  for (int j = 0; j < scales; ++j)
+  {
+    double total = 0.0;
+    for (const RadialProbe& probe : probes)
+    {
+      const double weight = probe.Weight * std::exp2(2.0 * probe.Octaves);
+      values(j) += weight * std::exp(-0.5 * std::exp2(2.0 * (c + probe.Octaves - j)));
+      total += weight;
+    }
+    values(j) /= total;
+  }
+  return values;
+}
+
+// The projections of the wanted ring on the rings of each scale.
+Eigen::VectorXd ProjectRing(double c, int scales)
+{
+  Eigen::VectorXd overlaps(scales);
+  for (int j = 0; j < scales; ++j)
+  {
+    overlaps(j) = Ln2 * std::pow(4.0, -j) * RadialOverlap(c - j);
+  }
+  return overlaps;
+}
+
+// The wanted amplitude within each scale.
+Eigen::VectorXd MatchPower(double c, int scales)
+{
+  Eigen::VectorXd amplitudes(scales);
+  for (int j = 0; j < scales; ++j)
+  {
+    amplitudes(j) = std::sqrt(PowerOverlap(c - j));
+  }
+  return amplitudes;
+}
+} // namespace
+
+void SubbandWeightParameters::Validate() const
+{
+  this->Pyramid.Validate();
+  if (!(this->FixedScale >= 0.0 && this->FixedScale <= this->Pyramid.Scales - 1))
+  {
+    throw std::invalid_argument("Subband noise: FixedScale must be 0 to Scales - 1.");
+  }
+}
+
+SubbandWeights::SubbandWeights(const SubbandWeightParameters& parameters)
+  : Parameters(parameters)
+{
+  parameters.Validate();
+  const int orientations = parameters.Pyramid.Orientations;
+  const int scales = parameters.Pyramid.Scales;
+  this->Angular = AngularGram(orientations);
+  this->Radial = RadialGram(scales);
+
+  // A fit looks at the metric in many directions, the heuristic along the axes of the bands.
+  const bool fits = parameters.Method == WeightMethod::LeastSquares ||
+    parameters.Method == WeightMethod::PowerMatched;
+  this->DirectionCount = fits ? FitDirections : orientations;
+  Eigen::MatrixXd filters(orientations, this->DirectionCount);
+  for (int n = 0; n < this->DirectionCount; ++n)
+  {
+    const double theta = Pi * n / this->DirectionCount;
+    const double c = std::cos(theta), s = std::sin(theta);
+    this->Squares.push_back({ c * c, 2.0 * c * s, s * s });
+    for (int i = 0; i < orientations; ++i)
+    {
+      filters(i, n) = AngularFilter(i, orientations, theta);
+    }
+  }
+
+  const int last = scales - 1;
+  const int filterFirst = -FilterMarginBelow, filterLast = scales + FilterMarginAbove;
+  if (fits)
+  {
+    this->AngularDual = this->Angular.inverse() * filters * (2.0 * Pi / this->DirectionCount);
+    const GaussianFit fit(scales);
+    this->Filter.Fill(
+      filterFirst, filterLast, FilterBits, [&](double c) { return fit(std::exp2(2.0 * c)); });
+  }
+  else
+  {
+    const RadialProbes probes = ProbesOf(parameters);
+    this->Target.Fill(0, last, TargetBits, [&](double c) { return ProbeRing(probes, c, scales); });
+    this->Filter.Fill(filterFirst, filterLast, FilterBits,
+      [&](double c) { return ProbeGaussian(probes, c, scales); });
+  }
+  if (parameters.Method == WeightMethod::LeastSquares)
+  {
+    const Eigen::MatrixXd radialDual = this->Radial.inverse();
+    this->Target.Fill(0, last, TargetBits,
+      [&](double c) { return Eigen::VectorXd(radialDual * ProjectRing(c, scales)); });
+  }
+  else if (parameters.Method == WeightMethod::PowerMatched)
+  {
+    this->Target.Fill(0, last, TargetBits, [&](double c) { return MatchPower(c, scales); });
+  }
+}
+
+bool SubbandWeights::Compute(const Eigen::Matrix2d& metric, double* gamma) const
+{
+  if (!IsFinite(metric))
+  {
+    std::fill_n(gamma, this->Parameters.Pyramid.Components(), 0.0);
+    return false;
+  }
+  const double k0 = this->Parameters.Pyramid.CenterFrequency();
+  Eigen::Matrix2d scaled;
+  if (this->Parameters.Method == WeightMethod::None)
+  {
+    scaled = std::exp2(2.0 * this->Parameters.FixedScale) * Eigen::Matrix2d::Identity();
+  }
+  else
+  {
+    scaled = metric;
+    this->ClampMetric(scaled);
+    scaled *= k0 * k0;
+  }
+  this->WeighBands(this->Target, scaled, gamma);
+  this->NormalizeVariance(gamma);
+  return true;
+}
+
+bool SubbandWeights::Antialias(const Eigen::Matrix2d& footprint, double* beta) const
+{
+  if (!IsFinite(footprint))
+  {
+    std::fill_n(beta, this->Parameters.Pyramid.Components(), 0.0);
+    return false;
+  }
+  const double omega0 = 2.0 * Pi * this->Parameters.Pyramid.CenterFrequency();
+  this->WeighBands(this->Filter, footprint * (omega0 * omega0), beta);
+  return true;
+}
+
+bool SubbandWeights::ClampMetric(Eigen::Matrix2d& metric) const
+{
+  const SubbandParameters& pyramid = this->Parameters.Pyramid;
+  const double smallest = std::pow(pyramid.CenterFrequency(), -2.0);
+  const double largest = std::ldexp(smallest, 2 * (pyramid.Scales - 1));
+  const Eigenvalues found = EigenvaluesOf(metric);
+  // A metric built to lie on the limit may miss it by rounding, which is no change worth reporting.
+  constexpr double tolerance = 1e-12;
+  if (found.Smaller >= smallest * (1.0 - tolerance) && found.Larger <= largest * (1.0 + tolerance))
+  {
+    return false;
+  }
+  const double a = std::clamp(found.Smaller, smallest, largest);
+  const double b = std::clamp(found.Larger, smallest, largest);
+  // Keep the eigenvectors: shrink the deviator in proportion to the difference of eigenvalues.
+  const double difference = found.Larger - found.Smaller;
+  const double shrink = difference > 0.0 ? (b - a) / difference : 0.0;
+  const Eigen::Matrix2d deviator =
+    metric - 0.5 * (found.Smaller + found.Larger) * Eigen::Matrix2d::Identity();
+  metric = 0.5 * (a + b) * Eigen::Matrix2d::Identity() + shrink * deviator;
+  return true;
+}
+
+void SubbandWeights::RadialTable::Fill(
+  int first, int last, int bits, const std::function<Eigen::VectorXd(double c)>& function)
+{
+  this->Smallest = std::ldexp(1.0, 2 * first);
+  this->Largest = std::ldexp(1.0, 2 * last);
+  this->Shift = 52 - bits;
+  const std::uint64_t begin = BitsOf(this->Smallest) >> this->Shift;
+  // One more than the last, to interpolate towards.
+  const std::uint64_t end = (BitsOf(this->Largest) >> this->Shift) + 2;
+  this->Rows.clear();
+  for (std::uint64_t entry = begin; entry < end; ++entry)
+  {
+    const Eigen::VectorXd row = function(0.5 * std::log2(FromBits(entry << this->Shift)));
+    this->Rows.insert(this->Rows.end(), row.data(), row.data() + row.size());
+    this->Width = static_cast<int>(row.size());
+  }
+}
+
+void SubbandWeights::RadialTable::Interpolate(double q, double* values) const
+{
+  // In this order NaN, from an overflow, becomes the smallest.
+  const std::uint64_t bits = BitsOf(std::min(this->Largest, std::max(this->Smallest, q)));
+  const std::uint64_t entry = (bits >> this->Shift) - (BitsOf(this->Smallest) >> this->Shift);
+  const std::uint64_t rest = bits & ((std::uint64_t{ 1 } << this->Shift) - 1);
+  const double fraction =
+    static_cast<double>(rest) / static_cast<double>(std::uint64_t{ 1 } << this->Shift);
+  const double* row = this->Rows.data() + entry * this->Width;
+  const double* next = row + this->Width;
+  for (int j = 0; j < this->Width; ++j)
+  {
+    values[j] = row[j] + fraction * (next[j] - row[j]);
+  }
+}
+
+void SubbandWeights::WeighBands(
+  const RadialTable& table, const Eigen::Matrix2d& scaledMetric, double* weights) const
+{
+  const int orientations = this->Parameters.Pyramid.Orientations;
+  const int scales = this->Parameters.Pyramid.Scales;
+  double radial[FitDirections * MaximumScales];
+  for (int n = 0; n < this->DirectionCount; ++n)
+  {
+    const auto& square = this->Squares[n];
+    const double q = square[0] * scaledMetric(0, 0) + square[1] * scaledMetric(0, 1) +
+      square[2] * scaledMetric(1, 1);
+    table.Interpolate(q, radial + n * MaximumScales);
+  }
+
+  if (this->AngularDual.size() == 0)
+  {
+    for (int i = 0; i < orientations; ++i)
+    {
+      for (int j = 0; j < scales; ++j)
+      {
+        weights[j * orientations + i] = radial[i * MaximumScales + j];
+      }
+    }
+    return;
+  }
+  const double* dual = this->AngularDual.data();
+  switch (orientations)
+  {
+    case 4:
+      return SumDirections<4>(dual, radial, this->DirectionCount, scales, weights);
+    case 6:
+      return SumDirections<6>(dual, radial, this->DirectionCount, scales, weights);
+    default:
+      return SumDirections<8>(dual, radial, this->DirectionCount, scales, weights);
+  }
+}
+
+void SubbandWeights::NormalizeVariance(double* gamma) const
+{
+  const SubbandParameters& pyramid = this->Parameters.Pyramid;
+  using Weights =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 8, MaximumScales>;
+  Eigen::Map<Eigen::MatrixXd> weights(gamma, pyramid.Orientations, pyramid.Scales);
+  const Weights filtered = this->Angular.lazyProduct(weights);
+
+  // tr(gamma^T Q_ang gamma Q_rad); Q_rad is tridiagonal.
+  double trace = 0.0;
+  for (int j = 0; j < pyramid.Scales; ++j)
+  {
+    trace += this->Radial(j, j) * filtered.col(j).dot(weights.col(j));
+    if (j + 1 < pyramid.Scales)
+    {
+      trace += 2.0 * this->Radial(j, j + 1) * filtered.col(j).dot(weights.col(j + 1));
+    }
+  }
+  weights /= pyramid.BandCenter * std::sqrt(trace);
+}
+
+double DistortionRatio(const Eigen::Matrix2d& metric)
+{
+  const Eigenvalues found = EigenvaluesOf(metric);
+  return found.Smaller > 0.0 ? std::sqrt(found.Larger / found.Smaller)
+                             : std::numeric_limits<double>::infinity();
+}
+
+int RequiredScales(const Eigen::Matrix2d& metric, double centerFrequency)
+{
+  const Eigenvalues found = EigenvaluesOf(metric * (centerFrequency * centerFrequency));
+  return static_cast<int>(
+           std::ceil(0.5 * std::log2(found.Larger)) - std::floor(0.5 * std::log2(found.Smaller))) +
+    1;
+}
+} // namespace steerable

@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * From a metric to the weights of subbands: noise that follows the metric, whatever the texture
+ * coordinates.
+ *
+ * Source: Goldberg, Zwicker, Durand, "Anisotropic Noise" (SIGGRAPH 2008), sections 3.1 and 4.2.
+ *
+ * The metric M of a point (SurfaceMetric.h) is a symmetric positive definite 2x2 matrix in repeats
+ * squared: M = lambda^2 T T^T, where T maps the surface to texture coordinates and lambda is the
+ * wavelength. The wanted spectrum has its centre where k^T M k = 1, so in the direction
+ * e = (cos theta, sin theta) at the scale
+ *
+ *     c(theta) = log2(e^T M e) / 2 + log2(k0).
+ *
+ * A target that is separable along each direction projects on the separable bands as
+ *
+ *     gamma_ij = sum_n A_i(theta_n) R_j(c(theta_n)),    A = (2 pi / N) Q_ang^-1 G,
+ *
+ * with a radial factor R_j that only depends on the method. The heuristic takes R at the axes of the
+ * bands instead of the sum. R is tabulated once.
+ */
+#ifndef SubbandWeights_h
+#define SubbandWeights_h
+
+#include "SubbandFilters.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <functional>
+#include <vector>
+
+namespace steerable
+{
+/// How weights are found from the metric.
+enum class WeightMethod
+{
+  LeastSquares, ///< The closest spectrum to the wanted one (paper, equation 1).
+  PowerMatched, ///< The wanted power in every direction and scale: the best isotropy.
+  Heuristic,    ///< The wanted spectrum at the centre of each band: the cheapest.
+  None          ///< Ignores the metric: an isotropic ring in the texture, for comparison.
+};
+
+struct SubbandWeightParameters
+{
+  /// The pyramid of the tiles that the weights are for.
+  SubbandParameters Pyramid;
+
+  WeightMethod Method = WeightMethod::LeastSquares;
+
+  /// Heuristic weights, and heuristic antialiasing, from three radii of a band instead of one: its
+  /// centre and half an octave to both sides. Lowers aliasing where pixels see the surface at a
+  /// grazing angle.
+  bool RadialTriple = false;
+
+  /// None only: the scale of the ring, [0, Scales - 1], not necessarily an integer.
+  double FixedScale = 0.0;
+
+  /// Throw std::invalid_argument if a member is out of its range.
+  void Validate() const;
+};
+
+/**
+ * Turns metrics into weights. Constant after construction: one object serves all threads.
+ */
+class SubbandWeights
+{
+public:
+  /// Throws std::invalid_argument for parameters out of range. Takes milliseconds.
+  explicit SubbandWeights(const SubbandWeightParameters& parameters);
+
+  /**
+   * Write the K*J weights gamma of a metric, orientation fastest, scaled so that the noise has
+   * variance one on the surface. Eigenvalues outside the pyramid are clamped (ClampMetric). Weights
+   * may be negative: clipping them would undo the fit. Returns false, with all weights zero, if the
+   * metric is not finite.
+   */
+  bool Compute(const Eigen::Matrix2d& metric, double* gamma) const;
+
+  /**
+   * Write the K*J factors beta in about [0, 1] that filter each band for samples with this
+   * footprint; they multiply gamma, and fade the noise where samples cannot carry it. The footprint
+   * J J^T, in repeats squared, is that of the Jacobian J from samples (pixels, or the points of a
+   * mesh) to texture coordinates; the filter is the Gaussian exp(-(2 pi)^2 k^T J J^T k / 2), with a
+   * standard deviation of one sample (paper, equation 4). Least squares for LeastSquares and
+   * PowerMatched weights, otherwise the filter at the centre of each band. Returns false, with all
+   * factors zero, if the footprint is not finite.
+   */
+  bool Antialias(const Eigen::Matrix2d& footprint, double* beta) const;
+
+  /**
+   * Clamp the eigenvalues of a finite metric to what the pyramid holds, [k0^-2, 4^(J-1) k0^-2].
+   * Returns whether it changed.
+   */
+  bool ClampMetric(Eigen::Matrix2d& metric) const;
+
+  const SubbandWeightParameters& GetParameters() const { return this->Parameters; }
+
+private:
+  // Directions over half a circle in the sum above: enough for 8:1.
+  static constexpr int FitDirections = 64;
+
+  // A function of c with J values, kept piecewise linear in q = 4^c. Entries are found through the
+  // leading bits of q, so no logarithm is taken.
+  class RadialTable
+  {
+  public:
+    // Tabulate for c in [first, last], with 2^bits entries for each doubling of q.
+    void Fill(
+      int first, int last, int bits, const std::function<Eigen::VectorXd(double c)>& function);
+    // Write the J values at q, clamped to the range of the table.
+    void Interpolate(double q, double* values) const;
+
+  private:
+    double Smallest = 0.0, Largest = 0.0;
+    int Shift = 0;
+    int Width = 0;
+    std::vector<double> Rows;
+  };
+
+  // gamma and beta alike: the values of a table along each direction, joined to weights of bands.
+  void WeighBands(
+    const RadialTable& table, const Eigen::Matrix2d& scaledMetric, double* weights) const;
+  void NormalizeVariance(double* gamma) const;
+
+  SubbandWeightParameters Parameters;
+  int DirectionCount = 0;
+  std::vector<std::array<double, 3>> Squares; // cos^2, 2 cos sin and sin^2 of each direction
+  Eigen::MatrixXd AngularDual;                // A, K x directions; empty where nothing is fitted
+  Eigen::MatrixXd Angular;                    // Q_ang
+  Eigen::MatrixXd Radial;                     // Q_rad
+  RadialTable Target;                         // R of the method
+  RadialTable Filter;                         // R of the antialiasing filter
+};
+
+/**
+ * The ratio of the singular values of T, 1 or more: how much the texture is stretched. Beyond 2, 3
+ * and 4 the weights of K = 4, 6 and 8 orientations no longer give isotropic noise. Infinite for a
+ * singular metric.
+ */
+double DistortionRatio(const Eigen::Matrix2d& metric);
+
+/**
+ * Scales that noise with this metric needs: ceil(c_max) - floor(c_min) + 1, for bands centred at
+ * k0 2^-j cycles per repeat. The metric must be positive definite.
+ */
+int RequiredScales(const Eigen::Matrix2d& metric, double centerFrequency);
+} // namespace steerable
+
+#endif

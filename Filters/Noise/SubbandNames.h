@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What the classes of subband noise call and number alike (private to this module).
+ */
+#ifndef SubbandNames_h
+#define SubbandNames_h
+
+#include "vtkDataArray.h"
+
+#include <string>
+
+namespace noise
+{
+/// 4, 6 or 8: the largest of these that is not above `orientations`.
+inline int AllowedOrientations(int orientations)
+{
+  return orientations >= 8 ? 8 : orientations >= 6 ? 6 : 4;
+}
+
+/// Names components o<i>s<j>, orientation fastest; `plane` is put in front.
+inline void NameSubbands(vtkDataArray* array, int orientations, int scales,
+  const std::string& plane = std::string(), int first = 0)
+{
+  for (int j = 0; j < scales; ++j)
+  {
+    for (int i = 0; i < orientations; ++i)
+    {
+      const std::string name = plane + "o" + std::to_string(i) + "s" + std::to_string(j);
+      array->SetComponentName(first + j * orientations + i, name.c_str());
+    }
+  }
+}
+} // namespace noise
+
+#endif

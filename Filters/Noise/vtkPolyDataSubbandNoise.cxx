@@ -1,0 +1,1043 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkPolyDataSubbandNoise.h"
+
+#include "NoiseArrays.h"
+#include "NoiseThreads.h"
+#include "SubbandNames.h"
+#include "SubbandSurface.h"
+#include "SubbandTiles.h"
+#include "SubbandWeights.h"
+#include "SurfaceMetric.h"
+
+#include "vtkCellData.h"
+#include "vtkCommunicator.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkFloatArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <limits>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+vtkStandardNewMacro(vtkPolyDataSubbandNoise);
+vtkCxxSetObjectMacro(vtkPolyDataSubbandNoise, Controller, vtkMultiProcessController);
+
+namespace
+{
+using noise::SubbandSurface;
+using noise::SurfaceSums;
+
+// More of the surface than this share is not folded over by the texture but mirrored charts.
+constexpr double LargestFoldedShare = 0.1;
+// How far texture coordinates may be stretched beyond the tiles' scales: on average, and at a place.
+constexpr double MeanOctavesOutside = 0.002;
+constexpr double ClampedOctaves = 0.05;
+// Missing the tiles' scales by so much on average is worse than seams.
+constexpr double FarOctavesOutside = 0.25;
+// Linear interpolation between points wants this many of them in a wavelength.
+constexpr double PointsPerWavelength = 8.0;
+// A projection with less of the blend's power than this does not show.
+constexpr double VisibleBlend = 0.1;
+// Points whose weights are held at a time.
+constexpr vtkIdType ChunkSize = 256;
+constexpr int MaximumBands = 48;
+
+/// A surface of the output that gets noise.
+struct Block
+{
+  vtkPolyData* Mesh = nullptr;
+  vtkDataArray* Texture = nullptr; // null: planar projections
+  vtkDataArray* Vectors = nullptr;
+  bool CellVectors = false;
+  std::unique_ptr<SubbandSurface> Surface;
+};
+
+/// Tiles and how they are laid on surfaces: what all blocks with the same parameterization share.
+struct Layout
+{
+  steerable::SubbandParameters Pyramid;
+  double Repeats = 1.0;    // of the tile for one repeat of the texture, or for a world unit
+  double FixedScale = 0.0; // of noise that ignores the mapping
+};
+
+/// What happened at points; `operator+=` joins what threads found.
+struct PointCounts
+{
+  vtkIdType Points = 0;
+  vtkIdType Unmapped = 0;
+  vtkIdType Undirected = 0;
+  vtkIdType Clamped = 0;
+  double Finer = 1.0; // largest factor that clamped noise is finer than wanted, or coarser
+  double Coarser = 1.0;
+
+  PointCounts& operator+=(const PointCounts& other)
+  {
+    this->Points += other.Points;
+    this->Unmapped += other.Unmapped;
+    this->Undirected += other.Undirected;
+    this->Clamped += other.Clamped;
+    this->Finer = std::max(this->Finer, other.Finer);
+    this->Coarser = std::max(this->Coarser, other.Coarser);
+    return *this;
+  }
+};
+
+/// Union of bounds over blocks and ranks: the lower corner, then the negated upper one.
+struct CommonBounds
+{
+  double Values[6];
+
+  CommonBounds() { std::fill_n(this->Values, 6, std::numeric_limits<double>::infinity()); }
+
+  void Add(vtkPolyData* mesh)
+  {
+    if (mesh->GetNumberOfPoints() == 0)
+    {
+      return;
+    }
+    double bounds[6];
+    mesh->GetBounds(bounds);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (std::isfinite(bounds[2 * axis]) && std::isfinite(bounds[2 * axis + 1]))
+      {
+        this->Values[axis] = std::min(this->Values[axis], bounds[2 * axis]);
+        this->Values[3 + axis] = std::min(this->Values[3 + axis], -bounds[2 * axis + 1]);
+      }
+    }
+  }
+
+  double Diagonal() const
+  {
+    double sum = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const double length = -this->Values[3 + axis] - this->Values[axis];
+      sum += std::isfinite(length) ? length * length : 0.0;
+    }
+    return std::isfinite(sum) ? std::sqrt(sum) : 0.0;
+  }
+};
+
+void Reduce(vtkMultiProcessController* controller, double* values, std::size_t count, int operation)
+{
+  if (controller && controller->GetNumberOfProcesses() > 1)
+  {
+    std::vector<double> all(count);
+    controller->AllReduce(values, all.data(), static_cast<vtkIdType>(count), operation);
+    std::copy(all.begin(), all.end(), values);
+  }
+}
+
+/// Typical distance of points, from sums that are the same on all ranks.
+double GetSpacing(const SurfaceSums& sums, double diagonal)
+{
+  const double triangles = sums[SurfaceSums::Triangles];
+  const double area = sums[SurfaceSums::Area] * std::ldexp(diagonal * diagonal, -40);
+  if (!(triangles > 0.0) || !(area > 0.0))
+  {
+    return 0.0;
+  }
+  // A closed surface has two triangles for each point. Three digits are enough, and read well.
+  const double mean = std::sqrt(2.0 * area / triangles);
+  const double unit = std::pow(10.0, std::floor(std::log10(mean)) - 2.0);
+  return std::round(mean / unit) * unit;
+}
+
+/// The most scales that leave the coarsest two cycles in a tile.
+int MostScales(steerable::SubbandParameters pyramid)
+{
+  const double octaves = std::log2(pyramid.CenterFrequency() / 2.0);
+  return std::clamp(static_cast<int>(std::floor(octaves + 1e-9)) + 1, 1, 6);
+}
+
+/// The value that half of a histogram's area is below.
+double Median(const double* histogram)
+{
+  double total = 0.0;
+  for (int bin = 0; bin < SurfaceSums::Bins; ++bin)
+  {
+    total += histogram[bin];
+  }
+  double below = 0.0;
+  for (int bin = 0; bin < SurfaceSums::Bins; ++bin)
+  {
+    below += histogram[bin];
+    if (2.0 * below >= total)
+    {
+      return SurfaceSums::OctavesOf(bin);
+    }
+  }
+  return 0.0;
+}
+
+/**
+ * Tiles for texture coordinates: the fewest scales, and the fewest repeats, with which all but a little
+ * of the surface finds its wavelengths in the pyramid; else the repeats that miss it by least. Only
+ * whole repeats keep the texture's seams, so a tile is spread over several repeats of a texture only
+ * where that is much too fine.
+ */
+Layout LayOnTexture(steerable::SubbandParameters pyramid, const SurfaceSums& sums, double diagonal,
+  double wavelength, double anisotropy)
+{
+  // Scale of the wanted noise at a singular value of 2^octaves repeats per diagonal.
+  const double center = std::log2(wavelength / diagonal * pyramid.CenterFrequency());
+  const double steering = 0.5 * std::log2(anisotropy);
+  const auto octavesOutside = [&](double repeats, int scales)
+  {
+    const double shift = center + std::log2(repeats);
+    double sum = 0.0;
+    double total = 0.0;
+    for (int bin = 0; bin < SurfaceSums::Bins; ++bin)
+    {
+      const double scale = SurfaceSums::OctavesOf(bin) + shift;
+      const double below = steering - scale;
+      const double above = scale + steering - (scales - 1);
+      total += sums.Smaller()[bin];
+      sum += sums.Smaller()[bin] * (below > ClampedOctaves ? below : 0.0);
+      sum += sums.Larger()[bin] * (above > ClampedOctaves ? above : 0.0);
+    }
+    return total > 0.0 ? sum / total : 0.0;
+  };
+
+  Layout layout;
+  const int most = MostScales(pyramid);
+  double best = std::numeric_limits<double>::infinity();
+  const auto tryRepeats = [&](double repeats, int scales)
+  {
+    const double outside = octavesOutside(repeats, scales);
+    if (outside < best)
+    {
+      best = outside;
+      pyramid.Scales = scales;
+      layout.Repeats = repeats;
+    }
+  };
+  for (int scales = std::min(2, most); scales <= most && best > MeanOctavesOutside; ++scales)
+  {
+    for (int step = 0; step <= 160 && best > MeanOctavesOutside; ++step)
+    {
+      tryRepeats(std::round(std::exp2(step / 8.0)), scales);
+    }
+  }
+  for (int step = 0; step <= 160 && best > FarOctavesOutside; ++step)
+  {
+    tryRepeats(1.0 / std::round(std::exp2(step / 8.0)), most);
+  }
+  layout.Pyramid = pyramid;
+  const double mean = 0.5 * (Median(sums.Smaller()) + Median(sums.Larger()));
+  layout.FixedScale =
+    std::clamp(mean + center + std::log2(layout.Repeats), 0.0, pyramid.Scales - 1.0);
+  return layout;
+}
+
+/**
+ * Tiles for planar projections, which shorten features up to 4:1 where they fade out and 2:1 where
+ * they show. The longest feature takes the coarsest scale.
+ */
+Layout LayOnPlanes(steerable::SubbandParameters pyramid, double wavelength, double anisotropy)
+{
+  const double octaves = std::max(2.0, std::log2(anisotropy) + 1.0);
+  pyramid.Scales = std::min(static_cast<int>(std::ceil(octaves - 1e-9)) + 1, MostScales(pyramid));
+  Layout layout;
+  layout.Pyramid = pyramid;
+  const double coarsest = std::ldexp(pyramid.CenterFrequency(), 1 - pyramid.Scales);
+  layout.Repeats = 1.0 / (coarsest * wavelength * std::sqrt(anisotropy));
+  layout.FixedScale = std::clamp(
+    std::log2(layout.Repeats * wavelength * pyramid.CenterFrequency()), 0.0, pyramid.Scales - 1.0);
+  return layout;
+}
+
+/// Tiles of one layout, kept while their parameters stand.
+class TileCache
+{
+public:
+  /// One blend of tiles for each plane, at this phase of the loop.
+  const std::vector<steerable::SubbandTiles>& Update(
+    const steerable::SubbandParameters& pyramid, double phase, int planes)
+  {
+    const std::array<double, 5> key = { double(pyramid.Orientations), double(pyramid.Scales),
+      double(pyramid.TileSize), pyramid.BandCenter, double(pyramid.Seed) };
+    if (key != this->Key)
+    {
+      this->Realizations.clear();
+      this->Planes.clear();
+      this->Key = key;
+    }
+    if (phase == this->Phase && static_cast<int>(this->Planes.size()) == planes)
+    {
+      return this->Planes;
+    }
+    const std::array<double, 4> loop = steerable::LoopWeights(phase);
+    std::vector<int> missing;
+    for (int plane = 0; plane < planes; ++plane)
+    {
+      for (int m = 0; m < 4; ++m)
+      {
+        const int realization = 4 * plane + m;
+        if (Counts(loop[m]) && !this->Realizations.count(realization))
+        {
+          missing.push_back(realization);
+          this->Realizations[realization];
+        }
+      }
+    }
+    noise::WithThreads(
+      [&]
+      {
+        vtkSMPTools::For(0, static_cast<vtkIdType>(missing.size()), 1,
+          [&](vtkIdType begin, vtkIdType end)
+          {
+            for (vtkIdType n = begin; n < end; ++n)
+            {
+              steerable::SubbandParameters parameters = pyramid;
+              parameters.Realization = static_cast<std::uint32_t>(missing[n]);
+              this->Realizations.at(missing[n]) = steerable::MakeSubbandTiles(parameters);
+            }
+          });
+      });
+    this->Planes.clear();
+    for (int plane = 0; plane < planes; ++plane)
+    {
+      std::vector<const steerable::SubbandTiles*> tiles;
+      std::vector<double> weights;
+      for (int m = 0; m < 4; ++m)
+      {
+        if (Counts(loop[m]))
+        {
+          tiles.push_back(&this->Realizations.at(4 * plane + m));
+          weights.push_back(loop[m]);
+        }
+      }
+      this->Planes.push_back(steerable::BlendTiles(tiles, weights));
+    }
+    this->Phase = phase;
+    return this->Planes;
+  }
+
+private:
+  static bool Counts(double weight) { return std::abs(weight) > 1e-9; }
+
+  std::array<double, 5> Key = {};
+  double Phase = -1.0;
+  std::map<int, steerable::SubbandTiles> Realizations;
+  std::vector<steerable::SubbandTiles> Planes;
+};
+} // namespace
+
+struct vtkPolyDataSubbandNoise::Internals
+{
+  TileCache TextureTiles;
+  TileCache PlaneTiles;
+};
+
+namespace
+{
+/// What the points of all blocks with one layout are evaluated with.
+struct Evaluator
+{
+  const Layout& Lay;
+  const steerable::SubbandWeights& Weights;
+  const std::vector<steerable::SubbandTiles>& Tiles; // one for each plane
+  double Wavelength;
+  double Anisotropy;
+  int Octaves;
+  double Persistence;
+  bool Turbulence;
+  bool AntiAlias;
+  std::uint32_t Seed;
+
+  /// Output arrays; all but the first may be null.
+  float* Noise = nullptr;
+  float* WeightArray = nullptr;
+  float* Distortion = nullptr;
+
+  // The points of a chunk that one set of tiles contributes to.
+  struct Plane
+  {
+    std::vector<vtkIdType> Points; // within the chunk
+    std::vector<Eigen::Vector2d> Texture;
+    std::vector<double> Gamma;
+    std::vector<Eigen::Matrix2d> Footprints;
+
+    void Clear()
+    {
+      this->Points.clear();
+      this->Texture.clear();
+      this->Gamma.clear();
+      this->Footprints.clear();
+    }
+  };
+
+  int Components() const { return this->Lay.Pyramid.Components(); }
+
+  /// Adds a point with this metric, in squared repeats of the tile; tells whether it was clamped.
+  bool AddPoint(Plane& plane, vtkIdType point, const Eigen::Vector2d& texture,
+    const Eigen::Matrix2d& metric, const Eigen::Matrix2d& footprint, double blend,
+    PointCounts& counts) const
+  {
+    const int components = this->Components();
+    double gamma[MaximumBands];
+    if (!texture.allFinite() || !this->Weights.Compute(metric, gamma))
+    {
+      return false;
+    }
+    plane.Points.push_back(point);
+    plane.Texture.push_back(texture);
+    plane.Footprints.push_back(footprint);
+    for (int c = 0; c < components; ++c)
+    {
+      plane.Gamma.push_back(blend * gamma[c]);
+    }
+    Eigen::Matrix2d clamped = metric;
+    if (this->Weights.GetParameters().Method == steerable::WeightMethod::None ||
+      blend * blend < VisibleBlend || !this->Weights.ClampMetric(clamped))
+    {
+      return false;
+    }
+    // The range of the factors, from the range of eigenvalues.
+    const double smallest = std::pow(this->Lay.Pyramid.CenterFrequency(), -2.0);
+    const double largest = std::ldexp(smallest, 2 * (this->Lay.Pyramid.Scales - 1));
+    const double mean = 0.5 * metric.trace();
+    const double radius = std::hypot(0.5 * (metric(0, 0) - metric(1, 1)), metric(0, 1));
+    const double low = std::max(mean - radius, 1e-12 * mean);
+    const double coarser = std::sqrt(smallest / low);
+    const double finer = std::sqrt((mean + radius) / largest);
+    counts.Coarser = std::max(counts.Coarser, coarser);
+    counts.Finer = std::max(counts.Finer, finer);
+    return std::max(coarser, finer) > std::exp2(ClampedOctaves);
+  }
+
+  PointCounts Evaluate(const Block& block, const noise::SteeringVectors& vectors,
+    vtkUnsignedCharArray* ghosts, vtkIdType begin, vtkIdType end) const
+  {
+    PointCounts counts;
+    std::vector<Plane> planes(this->Tiles.size());
+    for (vtkIdType first = begin; first < end; first += ChunkSize)
+    {
+      const vtkIdType last = std::min(first + ChunkSize, end);
+      for (Plane& plane : planes)
+      {
+        plane.Clear();
+      }
+      for (vtkIdType point = first; point < last; ++point)
+      {
+        PointCounts here;
+        here.Points = 1;
+        if (block.Texture)
+        {
+          this->AddTextured(*block.Surface, vectors, point, first, planes[0], here);
+        }
+        else
+        {
+          this->AddProjected(*block.Surface, vectors, point, first, planes, here);
+        }
+        if (!ghosts || !ghosts->GetValue(point))
+        {
+          counts += here;
+        }
+      }
+      this->SumOctaves(planes, first, last - first);
+    }
+    return counts;
+  }
+
+  void AddTextured(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
+    vtkIdType point, vtkIdType first, Plane& plane, PointCounts& counts) const
+  {
+    SubbandSurface::PointMetrics metrics;
+    const bool mapped = surface.ComputeTextured(point, vectors, this->Anisotropy, metrics);
+    if (this->Distortion)
+    {
+      const double ratio = mapped ? steerable::DistortionRatio(metrics.Isotropic) : 0.0;
+      this->Distortion[point] = static_cast<float>(ratio);
+    }
+    if (!mapped)
+    {
+      counts.Unmapped = 1;
+      return;
+    }
+    counts.Undirected = vectors.Values && !metrics.Directed;
+    const double repeats = this->Lay.Repeats;
+    const double scale = repeats * this->Wavelength;
+    counts.Clamped = this->AddPoint(plane, point - first, repeats * surface.GetTexture(point),
+      metrics.Metric * (scale * scale),
+      metrics.Isotropic * (repeats * repeats * metrics.SquaredSpacing), 1.0, counts);
+  }
+
+  void AddProjected(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
+    vtkIdType point, vtkIdType first, std::vector<Plane>& planes, PointCounts& counts) const
+  {
+    SubbandSurface::PointFeatures features;
+    const bool mapped = surface.ComputeProjected(point, vectors, this->Anisotropy, features);
+    if (this->Distortion)
+    {
+      this->Distortion[point] =
+        mapped ? static_cast<float>(1.0 / features.Normal.cwiseAbs().maxCoeff()) : 0.0f;
+    }
+    if (!mapped)
+    {
+      counts.Unmapped = 1;
+      return;
+    }
+    counts.Undirected = vectors.Values && !features.Directed;
+    const Eigen::Vector3d blend = steerable::TriplanarBlend(features.Normal);
+    const Eigen::Vector3d place = surface.GetPoint(point) * this->Lay.Repeats;
+    const Eigen::Matrix3d feature = features.Feature * (this->Wavelength * this->Wavelength);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (blend[axis] > 0.0)
+      {
+        const steerable::TextureGradients gradients =
+          steerable::PlanarGradients(features.Normal, axis, 1.0 / this->Lay.Repeats);
+        const Eigen::Vector2d texture(place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]);
+        const bool clamped = this->AddPoint(planes[axis], point - first, texture,
+          steerable::SurfaceMetric(gradients, feature),
+          gradients.transpose() * gradients * features.SquaredSpacing, blend[axis], counts);
+        counts.Clamped = counts.Clamped || clamped;
+      }
+    }
+  }
+
+  void SumOctaves(const std::vector<Plane>& planes, vtkIdType first, vtkIdType count) const
+  {
+    const int components = this->Components();
+    const vtkIdType tuple = components * static_cast<vtkIdType>(planes.size());
+    std::vector<double> uv;
+    std::vector<float> weights;
+    std::vector<float> values;
+    std::array<float, ChunkSize> sum{};
+    double amplitude = 1.0;
+    for (int octave = 0; octave < this->Octaves; ++octave, amplitude *= this->Persistence)
+    {
+      const double scale = std::ldexp(1.0, octave);
+      // Without a shift octaves would be copies of each other.
+      const std::array<double, 2> shift =
+        octave == 0 ? std::array<double, 2>{} : steerable::TileOffset(octave, this->Seed);
+      std::array<float, ChunkSize> noise{};
+      for (std::size_t axis = 0; axis < planes.size(); ++axis)
+      {
+        const Plane& plane = planes[axis];
+        const std::size_t points = plane.Points.size();
+        uv.resize(2 * points);
+        weights.resize(components * points);
+        values.resize(points);
+        double beta[MaximumBands];
+        std::fill_n(beta, MaximumBands, 1.0);
+        for (std::size_t n = 0; n < points; ++n)
+        {
+          uv[2 * n] = scale * plane.Texture[n][0] + shift[0];
+          uv[2 * n + 1] = scale * plane.Texture[n][1] + shift[1];
+          if (this->AntiAlias)
+          {
+            this->Weights.Antialias(plane.Footprints[n] * (scale * scale), beta);
+          }
+          for (int c = 0; c < components; ++c)
+          {
+            weights[n * components + c] =
+              static_cast<float>(plane.Gamma[n * components + c] * beta[c]);
+          }
+        }
+        steerable::SumSubbands(this->Tiles[axis], steerable::TileLookup::CatmullRom, points,
+          uv.data(), weights.data(), values.data());
+        for (std::size_t n = 0; n < points; ++n)
+        {
+          noise[plane.Points[n]] += values[n];
+          if (this->WeightArray && octave == 0)
+          {
+            std::copy_n(weights.data() + n * components, components,
+              this->WeightArray + (first + plane.Points[n]) * tuple + axis * components);
+          }
+        }
+      }
+      for (vtkIdType n = 0; n < count; ++n)
+      {
+        const float value = this->Turbulence ? std::abs(noise[n]) : noise[n];
+        sum[n] += static_cast<float>(amplitude) * value;
+      }
+    }
+    std::copy_n(sum.begin(), count, this->Noise + first);
+  }
+};
+
+/// Collects the surfaces of the input, and what to say about the rest.
+class BlockFinder
+{
+public:
+  BlockFinder(vtkPolyDataSubbandNoise* self, vtkInformation* choice)
+    : Self(self)
+  {
+    if (choice->Has(vtkDataObject::FIELD_ASSOCIATION()))
+    {
+      this->Cells =
+        choice->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+    }
+    if (choice->Has(vtkDataObject::FIELD_NAME()))
+    {
+      const char* name = choice->Get(vtkDataObject::FIELD_NAME());
+      this->Name = name && std::strcmp(name, "None") != 0 ? name : "";
+    }
+    else if (choice->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
+    {
+      this->Attribute = choice->Get(vtkDataObject::FIELD_ATTRIBUTE_TYPE());
+    }
+  }
+
+  bool IsSteered() const { return !this->Name.empty() || this->Attribute >= 0; }
+
+  /// False where the block has no noise; then Why says why.
+  bool Find(Block& block)
+  {
+    return this->FindTexture(block) && (!this->IsSteered() || this->FindVectors(block));
+  }
+
+  std::string Why;
+
+private:
+  bool FindTexture(Block& block)
+  {
+    if (this->Self->GetParameterization() == vtkPolyDataSubbandNoise::TRIPLANAR)
+    {
+      return true;
+    }
+    vtkDataArray* texture = block.Mesh->GetPointData()->GetTCoords();
+    if (texture && texture->GetNumberOfComponents() >= 2 &&
+      texture->GetNumberOfTuples() >= block.Mesh->GetNumberOfPoints())
+    {
+      block.Texture = texture;
+      return true;
+    }
+    if (this->Self->GetParameterization() == vtkPolyDataSubbandNoise::AUTOMATIC)
+    {
+      return true;
+    }
+    this->Why =
+      "There are no texture coordinates (2 or 3 components) on the points. Make them, for "
+      "instance with Texture Map to Sphere, or set Parameterization to Triplanar.";
+    return false;
+  }
+
+  bool FindVectors(Block& block)
+  {
+    for (const bool cells : { this->Cells, !this->Cells })
+    {
+      vtkDataSetAttributes* attributes = cells
+        ? static_cast<vtkDataSetAttributes*>(block.Mesh->GetCellData())
+        : block.Mesh->GetPointData();
+      vtkDataArray* array = this->Attribute >= 0
+        ? vtkDataArray::SafeDownCast(attributes->GetAbstractAttribute(this->Attribute))
+        : attributes->GetArray(this->Name.c_str());
+      if (!array)
+      {
+        continue;
+      }
+      const vtkIdType needed =
+        cells ? block.Mesh->GetNumberOfCells() : block.Mesh->GetNumberOfPoints();
+      if (noise::IsVector(array->GetNumberOfComponents()) && array->GetNumberOfTuples() >= needed)
+      {
+        block.Vectors = array;
+        block.CellVectors = cells;
+        return true;
+      }
+      std::ostringstream message;
+      message << "Array '" << (array->GetName() ? array->GetName() : "") << "' has "
+              << array->GetNumberOfComponents() << " component(s) and "
+              << array->GetNumberOfTuples() << " tuples. Choose vectors, with 2 or 3, for all "
+              << needed << (cells ? " cells." : " points.");
+      this->Why = message.str();
+    }
+    if (this->Why.empty())
+    {
+      this->Why = this->Name.empty()
+        ? "There are no active vectors on points or cells. Name an array of vectors, or none."
+        : "There is no array '" + this->Name +
+          "' on points or cells. Choose vectors that exist, or None.";
+    }
+    return false;
+  }
+
+  vtkPolyDataSubbandNoise* Self;
+  std::string Name;
+  int Attribute = -1;
+  bool Cells = false;
+};
+} // namespace
+
+//------------------------------------------------------------------------------
+vtkPolyDataSubbandNoise::vtkPolyDataSubbandNoise()
+  : Cache(new Internals)
+{
+  this->SetResultArrayName("SubbandNoise");
+  this->SetController(vtkMultiProcessController::GetGlobalController());
+}
+
+//------------------------------------------------------------------------------
+vtkPolyDataSubbandNoise::~vtkPolyDataSubbandNoise()
+{
+  this->SetResultArrayName(nullptr);
+  this->SetController(nullptr);
+  delete this->Cache;
+}
+
+//------------------------------------------------------------------------------
+void vtkPolyDataSubbandNoise::SetOrientations(int orientations)
+{
+  const int allowed = noise::AllowedOrientations(orientations);
+  if (this->Orientations != allowed)
+  {
+    this->Orientations = allowed;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkPolyDataSubbandNoise::SetPhase(double phase)
+{
+  phase = std::isfinite(phase) ? phase - std::floor(phase) : 0.0;
+  if (this->Phase != phase)
+  {
+    this->Phase = phase;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkPolyDataSubbandNoise::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkPolyDataSubbandNoise::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  // A point's metric is the mean over the triangles around it.
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  inputVector[0]->GetInformationObject(0)->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(),
+    outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS()) + 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkPolyDataSubbandNoise::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  if (!this->ResultArrayName || !*this->ResultArrayName)
+  {
+    vtkErrorMacro("ResultArrayName is empty. Give the noise array a name.");
+    return 0;
+  }
+
+  // The output: shallow copies of the input's datasets, so that arrays can be added.
+  BlockFinder finder(this, this->GetInputArrayInformation(0));
+  std::vector<Block> blocks;
+  SurfaceSums sums;
+  CommonBounds bounds;
+  vtkIdType blocksWithout = 0;
+  std::string otherType;
+  const auto addMesh = [&](vtkPolyData* mesh)
+  {
+    Block block;
+    block.Mesh = mesh;
+    if (mesh->GetNumberOfPoints() == 0)
+    {
+      return;
+    }
+    if (finder.Find(block))
+    {
+      bounds.Add(mesh);
+      blocks.push_back(std::move(block));
+    }
+    else
+    {
+      ++blocksWithout;
+    }
+  };
+  auto* composite = vtkCompositeDataSet::SafeDownCast(output);
+  if (composite)
+  {
+    auto* inputs = vtkCompositeDataSet::SafeDownCast(input);
+    composite->CopyStructure(inputs);
+    composite->GetFieldData()->PassData(inputs->GetFieldData());
+    auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(inputs->NewIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      vtkDataObject* leaf = iterator->GetCurrentDataObject();
+      auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
+      copy->ShallowCopy(leaf);
+      composite->SetDataSet(iterator, copy);
+      if (auto* mesh = vtkPolyData::SafeDownCast(copy))
+      {
+        addMesh(mesh);
+      }
+      else
+      {
+        ++sums[SurfaceSums::OtherBlocks];
+        otherType = leaf->GetClassName();
+      }
+    }
+  }
+  else
+  {
+    output->ShallowCopy(input);
+    addMesh(vtkPolyData::SafeDownCast(output));
+  }
+
+  // Everything that ranks do together comes before anything that may fail on one of them.
+  Reduce(this->Controller, bounds.Values, 6, vtkCommunicator::MIN_OP);
+  const double diagonal = bounds.Diagonal();
+  std::string failure;
+  try
+  {
+    for (Block& block : blocks)
+    {
+      block.Surface = std::make_unique<SubbandSurface>(block.Mesh, block.Texture, this->WrapSeams);
+      block.Surface->AddTo(sums, diagonal);
+      ++sums[block.Texture ? SurfaceSums::TexturedBlocks : SurfaceSums::ProjectedBlocks];
+    }
+  }
+  catch (const std::exception& error)
+  {
+    failure = error.what();
+  }
+  const SurfaceSums local = sums;
+  Reduce(this->Controller, sums.Values.data(), sums.Values.size(), vtkCommunicator::SUM_OP);
+
+  const bool nothing =
+    sums[SurfaceSums::TexturedBlocks] + sums[SurfaceSums::ProjectedBlocks] == 0.0;
+  if (failure.empty() && blocksWithout > 0 && (!composite || nothing))
+  {
+    failure = finder.Why;
+  }
+  if (failure.empty() && local[SurfaceSums::OtherBlocks] > 0 && nothing && blocksWithout == 0)
+  {
+    failure = "The input holds no surface but " + otherType + ". Extract its surface first.";
+  }
+  if (!failure.empty())
+  {
+    vtkErrorMacro(<< failure);
+    return 0;
+  }
+
+  const double anisotropy = finder.IsSteered() ? this->Anisotropy : 1.0;
+  const double spacing = GetSpacing(sums, diagonal);
+  double wavelength = this->Wavelength;
+  if (wavelength <= 0.0)
+  {
+    wavelength = std::max(diagonal / 50.0, PointsPerWavelength * spacing * std::sqrt(anisotropy));
+    wavelength = wavelength > 0.0 ? wavelength : 1.0;
+  }
+  this->ResolvedWavelength = wavelength;
+
+  const double mapped = sums[SurfaceSums::RegularArea] + sums[SurfaceSums::FlippedArea];
+  const bool mirrored = sums[SurfaceSums::FlippedArea] > 0.5 * mapped;
+  const double foldedArea = sums[mirrored ? SurfaceSums::RegularArea : SurfaceSums::FlippedArea];
+  const bool folds = foldedArea <= LargestFoldedShare * mapped;
+
+  PointCounts counts;
+  double textureRepeats = 1.0;
+  try
+  {
+    steerable::SubbandParameters pyramid;
+    pyramid.Orientations = this->Orientations;
+    pyramid.TileSize = this->TileSize;
+    pyramid.Seed = static_cast<std::uint32_t>(this->Seed);
+    const Layout layouts[2] = { LayOnPlanes(pyramid, wavelength, anisotropy),
+      LayOnTexture(pyramid, sums, diagonal > 0.0 ? diagonal : 1.0, wavelength, anisotropy) };
+    textureRepeats = layouts[1].Repeats;
+    std::unique_ptr<steerable::SubbandWeights> solvers[2];
+    for (std::size_t b = 0; b < blocks.size() && !this->GetAbortOutput(); ++b)
+    {
+      Block& block = blocks[b];
+      const bool textured = block.Texture != nullptr;
+      if (textured && folds)
+      {
+        block.Surface->Avoid(
+          mirrored ? steerable::TriangleMapping::Regular : steerable::TriangleMapping::Flipped);
+      }
+      const Layout& layout = layouts[textured];
+      const int planes = textured ? 1 : 3;
+      if (!solvers[textured])
+      {
+        steerable::SubbandWeightParameters parameters;
+        parameters.Pyramid = layout.Pyramid;
+        parameters.Method = static_cast<steerable::WeightMethod>(this->Method);
+        parameters.FixedScale = layout.FixedScale;
+        solvers[textured] = std::make_unique<steerable::SubbandWeights>(parameters);
+      }
+      const auto& tiles = (textured ? this->Cache->TextureTiles : this->Cache->PlaneTiles)
+                            .Update(layout.Pyramid, this->Phase, planes);
+
+      const vtkIdType points = block.Mesh->GetNumberOfPoints();
+      noise::SteeringVectors vectors;
+      std::vector<float> scratch;
+      std::unique_ptr<steerable::TupleReader<float>> reader;
+      if (block.Vectors)
+      {
+        const auto tuples = static_cast<std::size_t>(block.Vectors->GetNumberOfTuples());
+        reader = noise::MakeVectorReader(block.Vectors, noise::WorldAxes, false);
+        scratch.resize(3 * tuples);
+        vectors.Values = reader->Read(0, tuples, scratch.data());
+        vectors.Cells = block.CellVectors;
+      }
+
+      Evaluator evaluator{ layout, *solvers[textured], tiles, wavelength, anisotropy, this->Octaves,
+        this->Persistence, this->Function == TURBULENCE, this->AntiAlias, pyramid.Seed };
+      auto result = noise::NewOutputArray(this->ResultArrayName, 1, points);
+      evaluator.Noise = result->GetPointer(0);
+      vtkPointData* pointData = block.Mesh->GetPointData();
+      if (this->OutputWeights)
+      {
+        const int components = layout.Pyramid.Components();
+        auto array = noise::NewOutputArray("SubbandWeights", planes * components, points);
+        array->Fill(0.0);
+        for (int plane = 0; plane < planes; ++plane)
+        {
+          noise::NameSubbands(array, layout.Pyramid.Orientations, layout.Pyramid.Scales,
+            textured ? std::string() : std::string(1, "xyz"[plane]), plane * components);
+        }
+        evaluator.WeightArray = array->GetPointer(0);
+        pointData->AddArray(array);
+      }
+      if (this->OutputDistortion)
+      {
+        auto array = noise::NewOutputArray("Distortion", 1, points);
+        evaluator.Distortion = array->GetPointer(0);
+        pointData->AddArray(array);
+      }
+      vtkUnsignedCharArray* ghosts = block.Mesh->GetPointGhostArray();
+      ghosts = ghosts && ghosts->GetNumberOfTuples() >= points ? ghosts : nullptr;
+      counts += noise::ForEachPart(this, static_cast<std::size_t>(points), points,
+        static_cast<double>(b) / blocks.size(), 1.0 / blocks.size(),
+        [&](std::size_t begin, std::size_t end)
+        {
+          return evaluator.Evaluate(
+            block, vectors, ghosts, static_cast<vtkIdType>(begin), static_cast<vtkIdType>(end));
+        });
+      pointData->AddArray(result);
+      pointData->SetActiveScalars(this->ResultArrayName);
+      block.Surface.reset();
+    }
+  }
+  catch (const std::exception& error)
+  {
+    vtkErrorMacro(<< error.what());
+    return 0;
+  }
+
+  // One warning that says everything.
+  std::ostringstream message;
+  if (textureRepeats < 1.0 && local[SurfaceSums::TexturedBlocks] > 0.0)
+  {
+    message << "\nThe wavelength is long for the texture: a tile is spread over "
+            << std::round(1.0 / textureRepeats)
+            << " repeats of it, and its seams may show. Lower Wavelength or scale the texture "
+               "coordinates down.";
+  }
+  const double triangles = local[SurfaceSums::Triangles];
+  const double flipped = local[mirrored ? SurfaceSums::Regular : SurfaceSums::Flipped];
+  const double singular = local[SurfaceSums::Singular];
+  const double degenerate = local[SurfaceSums::Degenerate];
+  if ((folds && flipped > 0.0) || singular > 0.0 || degenerate > 0.0)
+  {
+    message << "\nOf " << triangles << " triangles " << (folds ? flipped : 0.0)
+            << " are folded over by the texture, " << singular << " have no area in it and "
+            << degenerate << " none on the surface; they were left out.";
+  }
+  if (counts.Unmapped > 0)
+  {
+    message << "\n"
+            << counts.Unmapped << " of " << counts.Points
+            << " points have no triangle with an area and got 0.";
+  }
+  if (counts.Undirected > 0)
+  {
+    message << "\n"
+            << counts.Undirected << " of " << counts.Points
+            << " points have no direction in the surface (zero, NaN, infinite or normal to it) and "
+               "got isotropic noise.";
+  }
+  if (counts.Clamped > 0)
+  {
+    message << "\nAt " << counts.Clamped << " of " << counts.Points
+            << " points the texture is stretched beyond the tiles' scales: noise is up to "
+            << std::round(10.0 * counts.Finer) / 10.0 << " times finer or "
+            << std::round(10.0 * counts.Coarser) / 10.0
+            << " times coarser than wanted. Raise TileSize, change Wavelength, or set "
+               "Parameterization to Triplanar.";
+  }
+  if (local[SurfaceSums::OtherBlocks] > 0)
+  {
+    message << "\n"
+            << local[SurfaceSums::OtherBlocks] << " block(s) are no surfaces (" << otherType
+            << ") and were passed on without noise. Extract their surface first.";
+  }
+  if (composite && blocksWithout > 0)
+  {
+    message << "\n" << blocksWithout << " block(s) were passed on without noise. " << finder.Why;
+  }
+  // Octaves that are too fine fade with AntiAlias.
+  const double thinnest = wavelength / std::sqrt(anisotropy) /
+    (this->AntiAlias ? 1.0 : std::ldexp(1.0, this->Octaves - 1));
+  if (!blocks.empty() && spacing > 0.0 && thinnest < 0.999 * PointsPerWavelength * spacing)
+  {
+    message << "\nThe points are " << spacing << " apart: " << thinnest / spacing
+            << " to a wavelength of " << thinnest << ", where " << PointsPerWavelength
+            << " are wanted. Set Wavelength to at least "
+            << wavelength * PointsPerWavelength * spacing / thinnest
+            << ", or refine the mesh (Subdivide).";
+  }
+  if (!message.str().empty())
+  {
+    vtkWarningMacro(<< message.str().substr(1));
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkPolyDataSubbandNoise::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Wavelength: " << this->Wavelength << "\n";
+  os << indent << "ResolvedWavelength: " << this->ResolvedWavelength << "\n";
+  os << indent << "Anisotropy: " << this->Anisotropy << "\n";
+  os << indent << "Parameterization: " << this->Parameterization << "\n";
+  os << indent << "Method: " << this->Method << "\n";
+  os << indent << "Orientations: " << this->Orientations << "\n";
+  os << indent << "Octaves: " << this->Octaves << "\n";
+  os << indent << "Persistence: " << this->Persistence << "\n";
+  os << indent << "Function: " << this->Function << "\n";
+  os << indent << "AntiAlias: " << this->AntiAlias << "\n";
+  os << indent << "WrapSeams: " << this->WrapSeams << "\n";
+  os << indent << "TileSize: " << this->TileSize << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "Phase: " << this->Phase << "\n";
+  os << indent << "ResultArrayName: " << (this->ResultArrayName ? this->ResultArrayName : "(none)")
+     << "\n";
+  os << indent << "OutputWeights: " << this->OutputWeights << "\n";
+  os << indent << "OutputDistortion: " << this->OutputDistortion << "\n";
+  os << indent << "Controller: " << this->Controller << "\n";
+}

@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkPolyDataSubbandNoise
+ * @brief   even noise on surfaces with distorted texture coordinates, steered by a field
+ *
+ * Takes a vtkPolyData, or a composite of them, of triangles, quads, polygons and strips, and adds one
+ * float point array of anisotropic noise (Goldberg, Zwicker and Durand 2008) with variance one, which
+ * it makes the active scalars. Everything else is passed on; the input is not written. Other datasets
+ * of a composite are passed on and counted: extract their surface first.
+ *
+ * Periodic tiles of noise in bands of direction and scale are looked up at the texture coordinates, and
+ * the bands are weighted at each point so that the noise has its Wavelength on the surface, however the
+ * texture is stretched there. Tangent vectors on points or cells (2 or 3 components) make features
+ * longer along them. Without texture coordinates three planar projections are blended.
+ *
+ * The value at a point depends on the triangles around it, on the seed and on what all blocks and ranks
+ * agree on: bounds, mean spacing of the points and how the texture is stretched overall. All ranks of
+ * the Controller have to take part. One ghost level is requested.
+ *
+ * Triangles without area on the surface or in the texture are left out and counted, as are those that
+ * the texture folds over; where more than a tenth of the surface is mirrored nothing is folded but
+ * charts are, and both sides count. Points without any triangle get 0.
+ *
+ * @sa
+ * vtkImageSubbandNoiseSource vtkSteerableNoiseFilter
+ */
+#ifndef vtkPolyDataSubbandNoise_h
+#define vtkPolyDataSubbandNoise_h
+
+#include "SteerableNoiseFiltersModule.h" // For export macro
+#include "vtkPassInputTypeAlgorithm.h"
+
+class vtkMultiProcessController;
+
+class STEERABLENOISEFILTERS_EXPORT vtkPolyDataSubbandNoise : public vtkPassInputTypeAlgorithm
+{
+public:
+  static vtkPolyDataSubbandNoise* New();
+  vtkTypeMacro(vtkPolyDataSubbandNoise, vtkPassInputTypeAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum ParameterizationType
+  {
+    AUTOMATIC = 0,
+    TEXTURE_COORDINATES = 1,
+    TRIPLANAR = 2
+  };
+  enum MethodType
+  {
+    LEAST_SQUARES = 0,
+    POWER_MATCHED = 1,
+    HEURISTIC = 2,
+    NONE = 3
+  };
+  enum FunctionType
+  {
+    FRACTAL = 0,
+    TURBULENCE = 1
+  };
+
+  /**
+   * The array that steers the noise is chosen by SetInputArrayToProcess(0, ...), on points or cells.
+   * Without it, or with the names "" and "None", nothing steers.
+   */
+
+  ///@{
+  /**
+   * Wavelength in world units. 0, the default: 1/50 of the diagonal of the bounds of all blocks on all
+   * ranks, but the thinnest features not finer than 8 point spacings. Negative values are clamped to 0.
+   */
+  vtkSetClampMacro(Wavelength, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(Wavelength, double);
+  ///@}
+
+  /// Wavelength of the last execution, world units.
+  vtkGetMacro(ResolvedWavelength, double);
+
+  ///@{
+  /// Length over width of features along the vectors, 1 (isotropic) to 8, default 4.
+  vtkSetClampMacro(Anisotropy, double, 1.0, 8.0);
+  vtkGetMacro(Anisotropy, double);
+  ///@}
+
+  ///@{
+  /**
+   * Where tiles are looked up: AUTOMATIC, the default: at a surface's texture coordinates if it has
+   * them, else TRIPLANAR; TEXTURE_COORDINATES: an error without them; TRIPLANAR: always projections.
+   */
+  vtkSetClampMacro(Parameterization, int, AUTOMATIC, TRIPLANAR);
+  vtkGetMacro(Parameterization, int);
+  ///@}
+
+  ///@{
+  /**
+   * How bands are weighted: LEAST_SQUARES, the default: the closest spectrum; POWER_MATCHED: the best
+   * isotropy; HEURISTIC: the cheapest; NONE: plain texture mapping of the same noise, for comparison.
+   */
+  vtkSetClampMacro(Method, int, LEAST_SQUARES, NONE);
+  vtkGetMacro(Method, int);
+  ///@}
+
+  ///@{
+  /// Directions of the bands: 4, 6 or 8, default 8, follow stretches of 2:1, 3:1 and 4:1.
+  void SetOrientations(int orientations);
+  vtkGetMacro(Orientations, int);
+  ///@}
+
+  ///@{
+  /// Terms of the sum over octaves, 1 to 16, default 1; each is twice as fine as the one before.
+  vtkSetClampMacro(Octaves, int, 1, 16);
+  vtkGetMacro(Octaves, int);
+  ///@}
+
+  ///@{
+  /// Factor of amplitude from one octave to the next, 0 to 1, default 0.7.
+  vtkSetClampMacro(Persistence, double, 0.0, 1.0);
+  vtkGetMacro(Persistence, double);
+  ///@}
+
+  ///@{
+  /// What is summed over octaves: FRACTAL, the default: the noise; TURBULENCE: its absolute value.
+  vtkSetClampMacro(Function, int, FRACTAL, TURBULENCE);
+  vtkGetMacro(Function, int);
+  ///@}
+
+  ///@{
+  /// Fade bands that are too fine for the points of the mesh, default on.
+  vtkSetMacro(AntiAlias, bool);
+  vtkGetMacro(AntiAlias, bool);
+  vtkBooleanMacro(AntiAlias, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Shorten steps of the texture coordinates along edges by whole repeats, default off: for meshes
+   * whose cells straddle a seam; not where a cell truly spans half a repeat.
+   */
+  vtkSetMacro(WrapSeams, bool);
+  vtkGetMacro(WrapSeams, bool);
+  vtkBooleanMacro(WrapSeams, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Texels along each axis of a tile, 64 to 1024, default 256. Larger tiles repeat later and have room
+   * for more scales (256: 5, 512: 6), so texture coordinates may be stretched more unevenly.
+   */
+  vtkSetClampMacro(TileSize, int, 64, 1024);
+  vtkGetMacro(TileSize, int);
+  ///@}
+
+  ///@{
+  /// Another seed, another noise; default 0.
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /// Position in a loop of blended tiles, [0, 1), default 0; only the fraction of what is set counts.
+  void SetPhase(double phase);
+  vtkGetMacro(Phase, double);
+  ///@}
+
+  ///@{
+  /// Name of the array that is added, default "SubbandNoise".
+  vtkSetStringMacro(ResultArrayName);
+  vtkGetStringMacro(ResultArrayName);
+  ///@}
+
+  ///@{
+  /**
+   * Adds the weights of the first octave as the float array "SubbandWeights", named o<i>s<j>: one
+   * component for each orientation and scale, three times as many where three projections are blended.
+   * Default off.
+   */
+  vtkSetMacro(OutputWeights, bool);
+  vtkGetMacro(OutputWeights, bool);
+  vtkBooleanMacro(OutputWeights, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Adds the stretch of the texture as the float array "Distortion": ratio of the singular values of
+   * the mapping, 1 or more; of the steepest-facing projection in triplanar noise; 0 where there is no
+   * mapping. Default off.
+   */
+  vtkSetMacro(OutputDistortion, bool);
+  vtkGetMacro(OutputDistortion, bool);
+  vtkBooleanMacro(OutputDistortion, bool);
+  ///@}
+
+  ///@{
+  /// Ranks that agree on automatic values; default the global controller, null: this process alone.
+  virtual void SetController(vtkMultiProcessController* controller);
+  vtkGetObjectMacro(Controller, vtkMultiProcessController);
+  ///@}
+
+protected:
+  vtkPolyDataSubbandNoise();
+  ~vtkPolyDataSubbandNoise() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestUpdateExtent(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*) override;
+  int RequestData(
+    vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*) override;
+
+  double Wavelength = 0.0;
+  double ResolvedWavelength = 0.0;
+  double Anisotropy = 4.0;
+  int Parameterization = AUTOMATIC;
+  int Method = LEAST_SQUARES;
+  int Orientations = 8;
+  int Octaves = 1;
+  double Persistence = 0.7;
+  int Function = FRACTAL;
+  bool AntiAlias = true;
+  bool WrapSeams = false;
+  int TileSize = 256;
+  int Seed = 0;
+  double Phase = 0.0;
+  char* ResultArrayName = nullptr;
+  bool OutputWeights = false;
+  bool OutputDistortion = false;
+  vtkMultiProcessController* Controller = nullptr;
+
+private:
+  vtkPolyDataSubbandNoise(const vtkPolyDataSubbandNoise&) = delete;
+  void operator=(const vtkPolyDataSubbandNoise&) = delete;
+
+  struct Internals;
+  Internals* Cache; // tiles, kept while their parameters stand
+};
+
+#endif

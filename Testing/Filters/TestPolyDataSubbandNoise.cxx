@@ -1,0 +1,1088 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/// vtkPolyDataSubbandNoise: arrays, cells, composites, steering, options, bad input, real meshes.
+#include "FilterTestHelpers.h"
+#include "SurfaceMetric.h"
+
+#include "vtkCellArray.h"
+#include "vtkDataObject.h"
+#include "vtkExecutive.h"
+#include "vtkFieldData.h"
+#include "vtkIdList.h"
+#include "vtkInformation.h"
+#include "vtkIntArray.h"
+#include "vtkLoopSubdivisionFilter.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
+#include "vtkPolyData.h"
+#include "vtkPolyDataSubbandNoise.h"
+#include "vtkSMPTools.h"
+#include "vtkSphereSource.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkXMLPolyDataReader.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+using namespace filtertest;
+
+namespace
+{
+constexpr double Pi = 3.14159265358979323846;
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+using Map = std::function<Eigen::Vector3d(double u, double v)>;
+
+enum class CellKind
+{
+  Triangles,
+  Quads,
+  Strips,
+  Polygons
+};
+
+/// n x n points with texture coordinates in [0, repeats], placed by `map`.
+vtkSmartPointer<vtkPolyData> Sheet(int n, const Map& map, CellKind kind = CellKind::Triangles,
+  double repeats = 1.0, bool texture = true)
+{
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkFloatArray> coordinates;
+  coordinates->SetName("uv");
+  coordinates->SetNumberOfComponents(2);
+  for (int y = 0; y < n; ++y)
+  {
+    for (int x = 0; x < n; ++x)
+    {
+      const double u = double(x) / (n - 1);
+      const double v = double(y) / (n - 1);
+      points->InsertNextPoint(map(u, v).data());
+      coordinates->InsertNextTuple2(repeats * u, repeats * v);
+    }
+  }
+  mesh->SetPoints(points);
+  if (texture)
+  {
+    mesh->GetPointData()->SetTCoords(coordinates);
+  }
+  vtkNew<vtkCellArray> cells;
+  for (int y = 0; y + 1 < n; ++y)
+  {
+    if (kind == CellKind::Strips)
+    {
+      cells->InsertNextCell(2 * n);
+    }
+    for (int x = 0; x < n; ++x)
+    {
+      const vtkIdType a = y * n + x;
+      if (kind == CellKind::Strips)
+      {
+        cells->InsertCellPoint(a + n);
+        cells->InsertCellPoint(a);
+      }
+      else if (x + 1 < n && kind == CellKind::Quads)
+      {
+        cells->InsertNextCell({ a, a + 1, a + 1 + n, a + n });
+      }
+      else if (x + 1 < n && kind == CellKind::Triangles)
+      {
+        cells->InsertNextCell({ a, a + 1, a + 1 + n });
+        cells->InsertNextCell({ a, a + 1 + n, a + n });
+      }
+      else if (x + 2 < n && x % 2 == 0)
+      {
+        cells->InsertNextCell({ a, a + 1, a + 2, a + 2 + n, a + 1 + n, a + n });
+      }
+    }
+  }
+  if (kind == CellKind::Strips)
+  {
+    mesh->SetStrips(cells);
+  }
+  else
+  {
+    mesh->SetPolys(cells);
+  }
+  return mesh;
+}
+
+Eigen::Vector3d Flat(double u, double v)
+{
+  return { u, v, 0.0 };
+}
+
+vtkSmartPointer<vtkPolyData> FlatSheet(int n = 65)
+{
+  return Sheet(n, Flat);
+}
+
+using Configure = std::function<void(vtkPolyDataSubbandNoise*)>;
+
+vtkSmartPointer<vtkPolyData> AddNoise(vtkPolyData* input, double wavelength,
+  const Configure& configure = {}, std::string* text = nullptr)
+{
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(input);
+  filter->SetWavelength(wavelength);
+  if (configure)
+  {
+    configure(filter);
+  }
+  filter->Update();
+  if (text)
+  {
+    *text = messages->Text;
+  }
+  else
+  {
+    EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
+  }
+  return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+std::vector<float> Noise(vtkPolyData* input, double wavelength, const Configure& configure = {},
+  std::string* text = nullptr)
+{
+  return Values(AddNoise(input, wavelength, configure, text), "SubbandNoise");
+}
+
+double LargestDifference(const std::vector<float>& a, const std::vector<float>& b)
+{
+  EXPECT_EQ(a.size(), b.size());
+  double largest = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+  {
+    largest = std::max(largest, double(std::abs(a[i] - b[i])));
+  }
+  return largest;
+}
+
+/// Mean products of derivatives of noise on a flat n x n sheet of sides 1, by differences.
+Eigen::Matrix2d StructureTensor(const std::vector<float>& noise, int n)
+{
+  Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+  for (int y = 0; y + 1 < n; ++y)
+  {
+    for (int x = 0; x + 1 < n; ++x)
+    {
+      const float a = noise[y * n + x], b = noise[y * n + x + 1], c = noise[(y + 1) * n + x],
+                  d = noise[(y + 1) * n + x + 1];
+      const Eigen::Vector2d g(0.5 * (b - a + d - c), 0.5 * (c - a + d - b));
+      tensor += g * g.transpose();
+    }
+  }
+  return tensor;
+}
+
+vtkSmartPointer<vtkDoubleArray> AddVectors(vtkPolyData* mesh, bool cells, int components,
+  const std::function<Eigen::Vector3d(vtkIdType)>& vector)
+{
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName("field");
+  array->SetNumberOfComponents(components);
+  const vtkIdType count = cells ? mesh->GetNumberOfCells() : mesh->GetNumberOfPoints();
+  array->SetNumberOfTuples(count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    const Eigen::Vector3d v = vector(i);
+    for (int c = 0; c < components; ++c)
+    {
+      array->SetComponent(i, c, v[c]);
+    }
+  }
+  (cells ? static_cast<vtkFieldData*>(mesh->GetCellData()) : mesh->GetPointData())->AddArray(array);
+  return array;
+}
+
+void Steer(vtkPolyDataSubbandNoise* filter, bool cells, const char* name = "field")
+{
+  filter->SetInputArrayToProcess(0, 0, 0,
+    cells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
+}
+
+vtkSmartPointer<vtkPolyData> ReadShared(const std::string& name)
+{
+  const std::string path = std::string(STEERABLENOISE_SHARED_DATA) + "/" + name;
+  if (!std::ifstream(path))
+  {
+    return nullptr;
+  }
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->Update();
+  return reader->GetOutput();
+}
+} // namespace
+
+TEST(PolyDataSubbandNoise, Defaults)
+{
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  EXPECT_EQ(filter->GetWavelength(), 0.0);
+  EXPECT_EQ(filter->GetAnisotropy(), 4.0);
+  EXPECT_EQ(filter->GetParameterization(), vtkPolyDataSubbandNoise::AUTOMATIC);
+  EXPECT_EQ(filter->GetMethod(), vtkPolyDataSubbandNoise::LEAST_SQUARES);
+  EXPECT_EQ(filter->GetOrientations(), 8);
+  EXPECT_EQ(filter->GetOctaves(), 1);
+  EXPECT_EQ(filter->GetPersistence(), 0.7);
+  EXPECT_EQ(filter->GetFunction(), vtkPolyDataSubbandNoise::FRACTAL);
+  EXPECT_TRUE(filter->GetAntiAlias());
+  EXPECT_FALSE(filter->GetWrapSeams());
+  EXPECT_EQ(filter->GetTileSize(), 256);
+  EXPECT_EQ(filter->GetSeed(), 0);
+  EXPECT_EQ(filter->GetPhase(), 0.0);
+  EXPECT_STREQ(filter->GetResultArrayName(), "SubbandNoise");
+  EXPECT_FALSE(filter->GetOutputWeights());
+  EXPECT_FALSE(filter->GetOutputDistortion());
+}
+
+TEST(PolyDataSubbandNoise, AddsOneActiveFloatArrayAndPassesTheRest)
+{
+  auto mesh = FlatSheet();
+  AddVectors(mesh, true, 3, [](vtkIdType) { return Eigen::Vector3d::UnitX(); });
+  vtkNew<vtkIntArray> note;
+  note->SetName("note");
+  note->InsertNextValue(7);
+  mesh->GetFieldData()->AddArray(note);
+  const vtkMTimeType before = mesh->GetMTime();
+  const int arrays = mesh->GetPointData()->GetNumberOfArrays();
+
+  auto output = AddNoise(mesh, 0.2);
+  EXPECT_EQ(mesh->GetMTime(), before);
+  EXPECT_EQ(mesh->GetPointData()->GetNumberOfArrays(), arrays);
+  EXPECT_EQ(output->GetPointData()->GetNumberOfArrays(), arrays + 1);
+  EXPECT_NE(output->GetCellData()->GetArray("field"), nullptr);
+  EXPECT_NE(output->GetFieldData()->GetArray("note"), nullptr);
+  EXPECT_EQ(output->GetPoints(), mesh->GetPoints());
+  vtkDataArray* scalars = output->GetPointData()->GetScalars();
+  ASSERT_NE(scalars, nullptr);
+  EXPECT_STREQ(scalars->GetName(), "SubbandNoise");
+  EXPECT_EQ(scalars->GetDataType(), VTK_FLOAT);
+  EXPECT_EQ(scalars->GetNumberOfTuples(), 65 * 65);
+  EXPECT_TRUE(AllFinite(Values(output, "SubbandNoise")));
+}
+
+TEST(PolyDataSubbandNoise, VarianceIsOne)
+{
+  const auto flat = Sheet(201, Flat);
+  const auto projected = Sheet(201, Flat, CellKind::Triangles, 1.0, false);
+  for (const int method : { 0, 1, 2, 3 })
+  {
+    for (const auto& mesh : { flat, projected })
+    {
+      double squares = 0.0;
+      for (int seed = 0; seed < 4; ++seed)
+      {
+        const auto noise = Noise(mesh, 0.05,
+          [&](vtkPolyDataSubbandNoise* filter)
+          {
+            filter->SetMethod(method);
+            filter->SetAntiAlias(false);
+            filter->SetSeed(seed);
+          });
+        squares += std::pow(Deviation(noise), 2) / 4;
+      }
+      EXPECT_NEAR(squares, 1.0, 0.1) << method;
+    }
+  }
+}
+
+// The same stretched sheet with and without compensation, at every number of orientations.
+TEST(PolyDataSubbandNoise, NoiseIsIsotropicOnStretchedTexture)
+{
+  const int n = 257;
+  // Texture coordinates run three times as fast along x as along y.
+  auto mesh = Sheet(n, Flat);
+  vtkDataArray* uv = mesh->GetPointData()->GetTCoords();
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    uv->SetComponent(i, 0, 3.0 * uv->GetComponent(i, 0));
+  }
+  const auto anisotropy = [&](int method, int orientations)
+  {
+    Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+    for (int seed = 0; seed < 3; ++seed)
+    {
+      tensor += StructureTensor(Noise(mesh, 0.08,
+                                  [&](vtkPolyDataSubbandNoise* filter)
+                                  {
+                                    filter->SetMethod(method);
+                                    filter->SetOrientations(orientations);
+                                    filter->SetAntiAlias(false);
+                                    filter->SetSeed(seed);
+                                  }),
+        n);
+    }
+    return tensor(0, 0) / tensor(1, 1);
+  };
+  EXPECT_GT(anisotropy(vtkPolyDataSubbandNoise::NONE, 8), 6.0);
+  for (const int method : { 0, 1, 2 })
+  {
+    EXPECT_NEAR(anisotropy(method, 8), 1.0, 0.5) << method;
+  }
+  EXPECT_LT(anisotropy(0, 6), 2.2);
+  EXPECT_LT(anisotropy(0, 4), 4.0);
+}
+
+TEST(PolyDataSubbandNoise, WavelengthIsInWorldUnits)
+{
+  const int n = 257;
+  for (const double scale : { 1.0, 1e-3 })
+  {
+    for (const double repeats : { 1.0, 0.05, 20.0 })
+    {
+      const auto mesh = Sheet(
+        n, [scale](double u, double v) { return Eigen::Vector3d(scale * u, scale * v, 0.0); },
+        CellKind::Quads, repeats);
+      std::string text;
+      const auto noise = Noise(
+        mesh, 0.1 * scale, [](vtkPolyDataSubbandNoise* filter) { filter->SetAntiAlias(false); },
+        &text);
+      // Twenty repeats are too many for waves of two of them: whole repeats cannot be kept.
+      EXPECT_EQ(text.find("a tile is spread over") != std::string::npos, repeats > 1.0) << text;
+      const double power = StructureTensor(noise, n).trace() * n * n / (double(n - 1) * (n - 1));
+      // RMS frequency of the ring, in waves per unit square's side: about 1 / Wavelength.
+      const double frequency = std::sqrt(power / std::pow(Deviation(noise), 2)) / (2.0 * Pi);
+      EXPECT_NEAR(frequency, 11.0, 2.5) << scale << " " << repeats;
+    }
+  }
+}
+
+TEST(PolyDataSubbandNoise, AutomaticWavelength)
+{
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  filter->SetInputData(FlatSheet(33));
+  filter->Update();
+  // Eight spacings of 1/32; 3 digits of it.
+  EXPECT_NEAR(filter->GetResolvedWavelength(), 8.0 / 32.0, 0.003);
+  filter->SetInputData(Sheet(513, Flat, CellKind::Quads));
+  filter->Update();
+  EXPECT_NEAR(filter->GetResolvedWavelength(), std::sqrt(2.0) / 50.0, 1e-9);
+  filter->SetWavelength(-3.0);
+  EXPECT_EQ(filter->GetWavelength(), 0.0);
+}
+
+TEST(PolyDataSubbandNoise, KindsOfCellsAgree)
+{
+  const Map bent = [](double u, double v)
+  { return Eigen::Vector3d(u + 0.2 * u * v, v, 0.1 * std::sin(3.0 * u)); };
+  const auto triangles = Noise(Sheet(61, bent), 0.2);
+  // Points of the border see one side only, and which triangles they see depends on the diagonals.
+  for (const CellKind kind : { CellKind::Strips, CellKind::Quads, CellKind::Polygons })
+  {
+    const auto other = Noise(Sheet(61, bent, kind), 0.2);
+    ASSERT_EQ(triangles.size(), other.size());
+    double squares = 0.0;
+    for (std::size_t i = 0; i < other.size(); ++i)
+    {
+      squares += std::pow(other[i] - triangles[i], 2) / other.size();
+    }
+    EXPECT_LT(std::sqrt(squares), 0.05) << int(kind);
+  }
+}
+
+TEST(PolyDataSubbandNoise, VerticesAndLinesDoNotShiftCells)
+{
+  // Vectors on cells: only if cell 8 is the polygon that it is does the noise stay.
+  auto plain = Sheet(81, Flat, CellKind::Quads);
+  auto vector = [&](vtkIdType cell)
+  { return Eigen::Vector3d(1.0, cell % 80 < 40 ? 0.0 : 1.0, 0.0); };
+  AddVectors(plain, true, 3, vector);
+
+  auto mixed = Sheet(81, Flat, CellKind::Quads);
+  vtkNew<vtkCellArray> vertices;
+  vertices->InsertNextCell({ 3 });
+  vertices->InsertNextCell({ 5, 6, 7 });
+  vtkNew<vtkCellArray> lines;
+  lines->InsertNextCell({ 0, 1, 2, 3, 4 });
+  mixed->SetVerts(vertices);
+  mixed->SetLines(lines);
+  AddVectors(mixed, true, 3,
+    [&](vtkIdType cell) { return cell < 3 ? Eigen::Vector3d(NaN, 0.0, 0.0) : vector(cell - 3); });
+
+  const auto steer = [](vtkPolyDataSubbandNoise* filter) { Steer(filter, true); };
+  EXPECT_EQ(LargestDifference(Noise(plain, 0.2, steer), Noise(mixed, 0.2, steer)), 0.0);
+}
+
+TEST(PolyDataSubbandNoise, VectorsSteer)
+{
+  const int n = 257;
+  const double angle = 0.4;
+  const Eigen::Vector3d direction(std::cos(angle), std::sin(angle), 0.0);
+  for (const bool texture : { true, false })
+  {
+    for (const bool cells : { false, true })
+    {
+      for (const int components : { 2, 3 })
+      {
+        Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+        for (int seed = 0; seed < 3; ++seed)
+        {
+          auto mesh = Sheet(n, Flat, CellKind::Quads, 1.0, texture);
+          // Length and sign do not matter, nor does a part along the normal.
+          AddVectors(mesh, cells, components,
+            [&](vtkIdType i)
+            {
+              const double length = i % 3 == 0 ? -5.0 : 0.1;
+              return Eigen::Vector3d(length * direction + Eigen::Vector3d(0.0, 0.0, 2.0 * length));
+            });
+          tensor += StructureTensor(Noise(mesh, 0.12,
+                                      [&](vtkPolyDataSubbandNoise* filter)
+                                      {
+                                        Steer(filter, cells);
+                                        filter->SetAnisotropy(3.0);
+                                        filter->SetSeed(seed);
+                                        filter->SetAntiAlias(false);
+                                      }),
+            n);
+        }
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(tensor);
+        const double aligned = std::abs(solver.eigenvectors().col(0).dot(direction.head<2>()));
+        EXPECT_GT(aligned, std::cos(0.1)) << texture << cells << components;
+        const double coherence =
+          (solver.eigenvalues()[1] - solver.eigenvalues()[0]) / solver.eigenvalues().sum();
+        EXPECT_GT(coherence, 0.6) << texture << cells << components;
+      }
+    }
+  }
+}
+
+TEST(PolyDataSubbandNoise, AnisotropyOneIsUnsteered)
+{
+  auto mesh = FlatSheet();
+  AddVectors(mesh, false, 3, [](vtkIdType) { return Eigen::Vector3d(1.0, 1.0, 0.0); });
+  const auto plain = Noise(mesh, 0.2);
+  const auto one = Noise(mesh, 0.2,
+    [](vtkPolyDataSubbandNoise* filter)
+    {
+      Steer(filter, false);
+      filter->SetAnisotropy(1.0);
+    });
+  EXPECT_LT(LargestDifference(plain, one), 1e-4);
+  for (const char* none : { "", "None" })
+  {
+    EXPECT_EQ(plain,
+      Noise(mesh, 0.2, [none](vtkPolyDataSubbandNoise* filter) { Steer(filter, false, none); }));
+  }
+}
+
+TEST(PolyDataSubbandNoise, VectorsWithoutDirectionAreCounted)
+{
+  auto mesh = FlatSheet(33);
+  AddVectors(mesh, false, 3,
+    [](vtkIdType i)
+    {
+      const double inf = std::numeric_limits<double>::infinity();
+      return i == 0 ? Eigen::Vector3d(0.0, 0.0, 0.0)
+        : i == 1    ? Eigen::Vector3d(NaN, 1.0, 0.0)
+        : i == 2    ? Eigen::Vector3d(inf, 1.0, 0.0)
+        : i == 3    ? Eigen::Vector3d(0.0, 0.0, 4.0)
+        : i == 4    ? Eigen::Vector3d(1e-300, 0.0, 0.0)
+                    : Eigen::Vector3d(1e300, 1e300, 0.0);
+    });
+  std::string text;
+  const auto noise = Noise(
+    mesh, 0.6, [](vtkPolyDataSubbandNoise* filter) { Steer(filter, false); }, &text);
+  EXPECT_TRUE(AllFinite(noise));
+  EXPECT_NE(text.find("4 of 1089 points have no direction"), std::string::npos) << text;
+}
+
+TEST(PolyDataSubbandNoise, BadTrianglesAreCountedAndDoNotSpread)
+{
+  const auto clean = Noise(FlatSheet(65), 0.2);
+  auto mesh = FlatSheet(65);
+  // One point of no area on the surface, one whose texture is not finite, one triangle flipped.
+  vtkNew<vtkCellArray> cells;
+  cells->DeepCopy(mesh->GetPolys());
+  cells->InsertNextCell({ 10, 10, 11 });
+  cells->InsertNextCell({ 0, 1, 2 });
+  cells->InsertNextCell({ 130, 260, 131 });
+  mesh->SetPolys(cells);
+  std::string text;
+  const auto noise = Noise(mesh, 0.2, {}, &text);
+  EXPECT_NE(text.find("Of 8195 triangles 1 are folded over by the texture, 0 have no area in it "
+                      "and 2 none on the surface"),
+    std::string::npos)
+    << text;
+  EXPECT_LT(LargestDifference(clean, noise), 1e-4);
+
+  // Texture that folds over at an inner point.
+  auto folded = FlatSheet(65);
+  folded->GetPointData()->GetTCoords()->SetTuple2(32 * 65 + 32, 0.54, 0.54);
+  const auto result = Noise(folded, 0.2, {}, &text);
+  EXPECT_TRUE(AllFinite(result));
+  EXPECT_NE(text.find(" are folded over by the texture, 0 have"), std::string::npos) << text;
+  EXPECT_EQ(text.find(" 0 are folded over"), std::string::npos) << text;
+
+  // A patch of the texture without area.
+  auto singular = FlatSheet(65);
+  for (const int x : { 20, 21, 22 })
+  {
+    for (const int y : { 20, 21, 22 })
+    {
+      singular->GetPointData()->GetTCoords()->SetTuple2(y * 65 + x, 0.3, 0.3);
+    }
+  }
+  const auto patch = Noise(singular, 0.2, {}, &text);
+  EXPECT_TRUE(AllFinite(patch));
+  EXPECT_EQ(patch[21 * 65 + 21], 0.0f);
+  EXPECT_NE(text.find("16 have no area in it"), std::string::npos) << text;
+  EXPECT_NE(text.find("1 of 4225 points have no triangle"), std::string::npos) << text;
+}
+
+TEST(PolyDataSubbandNoise, MirroredChartsAreNotFlipped)
+{
+  // Texture coordinates that run up and down again.
+  auto mesh = FlatSheet(65);
+  vtkDataArray* uv = mesh->GetPointData()->GetTCoords();
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    uv->SetComponent(i, 0, std::abs(0.5 - uv->GetComponent(i, 0)));
+  }
+  const auto noise = Noise(mesh, 0.2); // without a warning
+  EXPECT_GT(Deviation(noise), 0.5);
+  for (int y = 0; y < 65; y += 8)
+  {
+    EXPECT_NEAR(noise[y * 65 + 10], noise[y * 65 + 54], 1e-4);
+  }
+}
+
+TEST(PolyDataSubbandNoise, SeamsOfWholeRepeatsDoNotShow)
+{
+  // A tube: the last column of points repeats the first with u one larger.
+  const int n = 65;
+  const Map tube = [](double u, double v)
+  {
+    const double angle = 2.0 * Pi * (u == 1.0 ? 0.0 : u);
+    return Eigen::Vector3d(std::cos(angle), std::sin(angle), 4.0 * v + 0.4 * std::sin(angle));
+  };
+  const auto noise = Noise(Sheet(n, tube, CellKind::Quads), 1.0);
+  for (int y = 0; y < n; ++y)
+  {
+    EXPECT_NEAR(noise[y * n], noise[y * n + n - 1], 1e-4) << y;
+  }
+
+  // The same tube with shared points, whose last cells run back over the whole texture.
+  auto closed = Sheet(n, tube, CellKind::Quads);
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < closed->GetNumberOfCells(); ++cell)
+  {
+    closed->GetCellPoints(cell, ids);
+    for (vtkIdType corner = 0; corner < 4; ++corner)
+    {
+      const vtkIdType id = ids->GetId(corner);
+      ids->SetId(corner, id % n == n - 1 ? id - n + 1 : id);
+    }
+    cells->InsertNextCell(ids);
+  }
+  closed->SetPolys(cells);
+  // Wrapped, they are cells like any others, though the last column has none of its own.
+  std::string text;
+  const auto wrapped = Noise(
+    closed, 1.0, [](vtkPolyDataSubbandNoise* filter) { filter->SetWrapSeams(true); }, &text);
+  EXPECT_EQ(text.find("folded"), std::string::npos) << text;
+  for (int y = 0; y < n; ++y)
+  {
+    for (int x = 0; x + 1 < n; ++x)
+    {
+      ASSERT_NEAR(wrapped[y * n + x], noise[y * n + x], 1e-3) << x << " " << y;
+    }
+  }
+  // Not wrapped, they look folded, are left out, and leave their points to the others.
+  const auto straddling = Noise(closed, 1.0, {}, &text);
+  EXPECT_NE(text.find("128 are folded over"), std::string::npos) << text;
+  EXPECT_LT(LargestDifference(straddling, wrapped), 0.5);
+}
+
+TEST(PolyDataSubbandNoise, Octaves)
+{
+  auto mesh = Sheet(201, Flat);
+  const auto run = [&](int octaves, double persistence, int function)
+  {
+    return Noise(mesh, 0.2,
+      [&](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetOctaves(octaves);
+        filter->SetPersistence(persistence);
+        filter->SetFunction(function);
+      });
+  };
+  const auto one = run(1, 0.7, vtkPolyDataSubbandNoise::FRACTAL);
+  EXPECT_EQ(one, run(3, 0.0, vtkPolyDataSubbandNoise::FRACTAL));
+  const auto three = run(3, 0.5, vtkPolyDataSubbandNoise::FRACTAL);
+  EXPECT_NEAR(Deviation(three) / Deviation(one), std::sqrt(1.0 + 0.25 + 0.0625), 0.25);
+  EXPECT_GT(StructureTensor(three, 201).trace(), 1.5 * StructureTensor(one, 201).trace());
+  const auto turbulence = run(3, 0.5, vtkPolyDataSubbandNoise::TURBULENCE);
+  EXPECT_GE(*std::min_element(turbulence.begin(), turbulence.end()), 0.0f);
+  for (std::size_t i = 0; i < one.size(); ++i)
+  {
+    ASSERT_GE(turbulence[i], std::abs(three[i]) - 1e-5f);
+  }
+}
+
+TEST(PolyDataSubbandNoise, AntiAliasFadesWhatTheMeshCannotCarry)
+{
+  const auto deviation = [](double wavelength, bool antialias)
+  {
+    std::string text;
+    return Deviation(Noise(
+      FlatSheet(65), wavelength,
+      [=](vtkPolyDataSubbandNoise* filter) { filter->SetAntiAlias(antialias); }, &text));
+  };
+  EXPECT_LT(deviation(2.0 / 64, true), 0.05);
+  EXPECT_NEAR(deviation(8.0 / 64, true), 0.73, 0.12);
+  EXPECT_GT(deviation(2.0 / 64, false), 0.8);
+}
+
+TEST(PolyDataSubbandNoise, CoarseMeshIsReportedWithNumbers)
+{
+  std::string text;
+  Noise(FlatSheet(65), 4.0 / 64, {}, &text);
+  EXPECT_NE(text.find("The points are 0.0156 apart"), std::string::npos) << text;
+  EXPECT_NE(text.find("Set Wavelength to at least 0.12"), std::string::npos) << text;
+  Noise(FlatSheet(65), 8.0 / 64, {}, &text);
+  EXPECT_EQ(text, "");
+}
+
+TEST(PolyDataSubbandNoise, PhaseLoops)
+{
+  auto mesh = FlatSheet(129);
+  const auto at = [&](double phase)
+  { return Noise(mesh, 0.1, [=](vtkPolyDataSubbandNoise* filter) { filter->SetPhase(phase); }); };
+  const auto still = at(0.0);
+  EXPECT_EQ(still, at(1.0));
+  EXPECT_EQ(at(0.25), at(-0.75));
+  EXPECT_LT(LargestDifference(still, at(0.999)), 0.1);
+  EXPECT_GT(LargestDifference(still, at(0.5)), 1.0);
+  EXPECT_NEAR(Deviation(still), Deviation(at(0.3)), 0.12);
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  filter->SetPhase(NaN);
+  EXPECT_EQ(filter->GetPhase(), 0.0);
+}
+
+TEST(PolyDataSubbandNoise, SeedsAndTileSizes)
+{
+  auto mesh = FlatSheet();
+  const auto zero = Noise(mesh, 0.2);
+  const auto one = Noise(mesh, 0.2, [](vtkPolyDataSubbandNoise* filter) { filter->SetSeed(1); });
+  EXPECT_GT(LargestDifference(zero, one), 1.0);
+  const auto large =
+    Noise(mesh, 0.2, [](vtkPolyDataSubbandNoise* filter) { filter->SetTileSize(512); });
+  EXPECT_NEAR(Deviation(large), Deviation(zero), 0.3);
+}
+
+TEST(PolyDataSubbandNoise, CachedTilesGiveTheSameNoise)
+{
+  auto mesh = FlatSheet();
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  filter->SetInputData(mesh);
+  filter->SetWavelength(0.2);
+  filter->Update();
+  const auto first = Values(filter->GetOutputDataObject(0), "SubbandNoise");
+  for (const int seed : { 3, 0 })
+  {
+    filter->SetSeed(seed);
+    filter->SetPhase(seed ? 0.4 : 0.0);
+    filter->SetOrientations(seed ? 6 : 8);
+    filter->Update();
+  }
+  EXPECT_EQ(first, Values(filter->GetOutputDataObject(0), "SubbandNoise"));
+}
+
+TEST(PolyDataSubbandNoise, WeightsAndDistortion)
+{
+  for (const bool texture : { true, false })
+  {
+    auto mesh = Sheet(
+      33, [](double u, double v) { return Eigen::Vector3d(2.0 * u, v, 0.3 * v); },
+      CellKind::Triangles, 1.0, texture);
+    const auto output = AddNoise(mesh, 0.4,
+      [](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetOutputWeights(true);
+        filter->SetOutputDistortion(true);
+        filter->SetOrientations(6);
+      });
+    vtkDataArray* weights = output->GetPointData()->GetArray("SubbandWeights");
+    vtkDataArray* distortion = output->GetPointData()->GetArray("Distortion");
+    ASSERT_NE(weights, nullptr);
+    ASSERT_NE(distortion, nullptr);
+    EXPECT_EQ(weights->GetNumberOfComponents() % (texture ? 6 : 18), 0);
+    EXPECT_STREQ(weights->GetComponentName(7), texture ? "o1s1" : "xo1s1");
+    const double length = std::hypot(1.0, 0.3);
+    EXPECT_NEAR(distortion->GetComponent(70, 0), texture ? 2.0 / length : length, 1e-5);
+    EXPECT_STREQ(output->GetPointData()->GetScalars()->GetName(), "SubbandNoise");
+  }
+}
+
+TEST(PolyDataSubbandNoise, TriplanarNeedsNoTexture)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(120);
+  sphere->SetPhiResolution(60);
+  sphere->Update();
+  auto* mesh = sphere->GetOutput();
+  const auto automatic = Noise(mesh, 0.2);
+  EXPECT_TRUE(AllFinite(automatic));
+  EXPECT_EQ(automatic,
+    Noise(mesh, 0.2,
+      [](vtkPolyDataSubbandNoise* filter)
+      { filter->SetParameterization(vtkPolyDataSubbandNoise::TRIPLANAR); }));
+  // Without the mesh's own normals those of the triangles.
+  vtkNew<vtkPolyData> bare;
+  bare->CopyStructure(mesh);
+  EXPECT_LT(LargestDifference(automatic, Noise(bare, 0.2)), 0.1);
+
+  std::string text;
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto pipeline = Listen(filter->GetExecutive());
+  auto messages = Listen(filter);
+  filter->SetInputData(mesh);
+  filter->SetParameterization(vtkPolyDataSubbandNoise::TEXTURE_COORDINATES);
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("There are no texture coordinates"), std::string::npos);
+}
+
+TEST(PolyDataSubbandNoise, ThreadsGiveTheSameBits)
+{
+  auto mesh = Sheet(301,
+    [](double u, double v) { return Eigen::Vector3d(u + 0.3 * v * v, v, std::sin(4.0 * u * v)); });
+  AddVectors(mesh, false, 3, [](vtkIdType i) { return Eigen::Vector3d(1.0, i % 301, 0.0); });
+  std::vector<std::vector<float>> results;
+  for (const int threads : { 1, 2, 4 })
+  {
+    vtkSMPTools::LocalScope(vtkSMPTools::Config{ threads, "STDThread", false },
+      [&]
+      {
+        std::string text;
+        results.push_back(Noise(
+          mesh, 0.1,
+          [](vtkPolyDataSubbandNoise* filter)
+          {
+            Steer(filter, false);
+            filter->SetOctaves(2);
+          },
+          &text));
+      });
+  }
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(results[0], results[2]);
+}
+
+TEST(PolyDataSubbandNoise, Composites)
+{
+  auto sheet = FlatSheet();
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  vtkNew<vtkMultiBlockDataSet> inner;
+  blocks->SetBlock(0, sheet);
+  inner->SetBlock(0, Sheet(33, Flat, CellKind::Quads, 1.0, false));
+  inner->SetBlock(1, MakeImage(5, 5, 5));
+  blocks->SetBlock(1, inner);
+  blocks->SetBlock(3, vtkNew<vtkPolyData>());
+  blocks->GetMetaData(0u)->Set(vtkCompositeDataSet::NAME(), "sheet");
+
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(blocks);
+  filter->SetWavelength(0.3);
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 0) << messages->Text;
+  EXPECT_EQ(messages->Warnings, 1) << messages->Text;
+  EXPECT_NE(messages->Text.find("1 block(s) are no surfaces (vtkImageData)"), std::string::npos);
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_NE(output, nullptr);
+  EXPECT_STREQ(output->GetMetaData(0u)->Get(vtkCompositeDataSet::NAME()), "sheet");
+  EXPECT_TRUE(AllFinite(Values(output->GetBlock(0), "SubbandNoise")));
+  auto* second = vtkMultiBlockDataSet::SafeDownCast(output->GetBlock(1));
+  EXPECT_TRUE(AllFinite(Values(second->GetBlock(0), "SubbandNoise")));
+  EXPECT_NE(second->GetBlock(1), nullptr);
+  EXPECT_EQ(sheet->GetPointData()->GetArray("SubbandNoise"), nullptr);
+  // A block alone gives what it gives among others, where the wavelength is set.
+  EXPECT_LT(
+    LargestDifference(Values(output->GetBlock(0), "SubbandNoise"), Noise(sheet, 0.3)), 1e-6);
+
+  vtkNew<vtkPartitionedDataSetCollection> collection;
+  collection->SetPartition(0, 0, sheet);
+  filter->SetInputData(collection);
+  filter->Update();
+  auto* partitions = vtkPartitionedDataSetCollection::SafeDownCast(filter->GetOutputDataObject(0));
+  ASSERT_NE(partitions, nullptr);
+  EXPECT_TRUE(AllFinite(Values(partitions->GetPartition(0, 0), "SubbandNoise")));
+
+  // Nothing but a volume.
+  vtkNew<vtkMultiBlockDataSet> volumes;
+  volumes->SetBlock(0, MakeImage(5, 5, 5));
+  auto pipeline = Listen(filter->GetExecutive());
+  messages->Text.clear();
+  filter->SetInputData(volumes);
+  filter->Update();
+  EXPECT_NE(messages->Text.find("Extract its surface first"), std::string::npos);
+}
+
+TEST(PolyDataSubbandNoise, MissingArrays)
+{
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto messages = Listen(filter);
+  auto pipeline = Listen(filter->GetExecutive());
+  filter->SetInputData(FlatSheet());
+  Steer(filter, false, "wind");
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("There is no array 'wind'"), std::string::npos);
+
+  // Texture coordinates are no vectors in space but have two components; scalars have one.
+  auto mesh = FlatSheet();
+  vtkNew<vtkFloatArray> scalars;
+  scalars->SetName("one");
+  scalars->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  mesh->GetPointData()->AddArray(scalars);
+  messages->Text.clear();
+  filter->SetInputData(mesh);
+  Steer(filter, false, "one");
+  filter->Update();
+  EXPECT_NE(messages->Text.find("'one' has 1 component(s)"), std::string::npos);
+  scalars->SetNumberOfComponents(3);
+  scalars->SetNumberOfTuples(7);
+  messages->Text.clear();
+  filter->Modified();
+  filter->Update();
+  EXPECT_NE(messages->Text.find("7 tuples. Choose vectors"), std::string::npos) << messages->Text;
+
+  // In a composite the block passes.
+  auto steered = FlatSheet();
+  AddVectors(steered, false, 3, [](vtkIdType) { return Eigen::Vector3d::UnitX(); });
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, FlatSheet());
+  blocks->SetBlock(1, steered);
+  messages->Text.clear();
+  messages->Errors = 0;
+  filter->SetInputData(blocks);
+  filter->SetWavelength(0.5);
+  Steer(filter, false);
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 0) << messages->Text;
+  EXPECT_NE(messages->Text.find("1 block(s) were passed on without noise"), std::string::npos);
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  EXPECT_TRUE(Values(output->GetBlock(0), "SubbandNoise").empty());
+  EXPECT_TRUE(AllFinite(Values(output->GetBlock(1), "SubbandNoise")));
+
+  filter->SetInputData(steered);
+  filter->SetResultArrayName("");
+  messages->Text.clear();
+  filter->Update();
+  EXPECT_NE(messages->Text.find("ResultArrayName is empty"), std::string::npos);
+}
+
+TEST(PolyDataSubbandNoise, EmptyAndHostileInput)
+{
+  vtkNew<vtkPolyData> empty;
+  EXPECT_NE(AddNoise(empty, 0.0), nullptr);
+
+  std::string text;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->InsertNextPoint(0.0, 0.0, 0.0);
+  points->InsertNextPoint(NaN, 0.0, 0.0);
+  points->InsertNextPoint(1e308, -1e308, 0.0);
+  vtkNew<vtkPolyData> mesh;
+  mesh->SetPoints(points);
+  EXPECT_EQ(Noise(mesh, 0.0, {}, &text), std::vector<float>(3, 0.0f));
+  EXPECT_NE(text.find("3 of 3 points have no triangle"), std::string::npos) << text;
+  vtkNew<vtkCellArray> cells;
+  cells->InsertNextCell({ 0, 1, 2 });
+  mesh->SetPolys(cells);
+  EXPECT_TRUE(AllFinite(Noise(mesh, 0.0, {}, &text)));
+
+  // Texture coordinates that are not finite, or beyond any reason.
+  auto sheet = FlatSheet(33);
+  vtkDataArray* uv = sheet->GetPointData()->GetTCoords();
+  uv->SetTuple2(40, NaN, 0.0);
+  uv->SetTuple2(80, std::numeric_limits<double>::infinity(), 0.0);
+  EXPECT_TRUE(AllFinite(Noise(sheet, 0.3, {}, &text)));
+  for (vtkIdType i = 0; i < uv->GetNumberOfTuples(); ++i)
+  {
+    uv->SetTuple2(i, 1e30 * i, -1e30 * (i % 33));
+  }
+  EXPECT_TRUE(AllFinite(Noise(sheet, 0.3, {}, &text)));
+  EXPECT_TRUE(AllFinite(Noise(sheet, 1e300, {}, &text)));
+  EXPECT_TRUE(AllFinite(Noise(sheet, 1e-300, {}, &text)));
+
+  // One component is not a pair of coordinates: projections.
+  vtkNew<vtkFloatArray> single;
+  single->SetName("u");
+  single->SetNumberOfTuples(33 * 33);
+  single->Fill(0.5);
+  sheet->GetPointData()->SetTCoords(single);
+  EXPECT_GT(Deviation(Noise(sheet, 0.3)), 0.3);
+}
+
+TEST(PolyDataSubbandNoise, GhostsCountForMetricsOnly)
+{
+  // The left half with one column of ghost cells is what the left half is of the whole.
+  const int n = 65;
+  const Map bent = [](double u, double v)
+  { return Eigen::Vector3d(u + 0.4 * u * u * v, v + 0.2 * u, 0.2 * std::sin(5.0 * u)); };
+  const auto whole = Sheet(n, bent, CellKind::Quads);
+  const auto expected = Noise(whole, 0.3);
+  vtkNew<vtkPolyData> part;
+  part->ShallowCopy(whole);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  for (int cell = 0; cell < (n - 1) * (n - 1); ++cell)
+  {
+    const int x = cell % (n - 1);
+    ghosts->InsertNextValue(x < 32 ? 0
+        : x == 32                  ? vtkDataSetAttributes::DUPLICATECELL
+                                   : vtkDataSetAttributes::HIDDENCELL);
+  }
+  part->GetCellData()->AddArray(ghosts);
+  std::string text;
+  const auto noise = Noise(part, 0.3, {}, &text);
+  for (int y = 0; y < n; ++y)
+  {
+    for (int x = 0; x <= 32; ++x)
+    {
+      ASSERT_NEAR(noise[y * n + x], expected[y * n + x], 1e-5) << x;
+    }
+  }
+}
+
+TEST(PolyDataSubbandNoise, SettersClamp)
+{
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  filter->SetAnisotropy(100.0);
+  EXPECT_EQ(filter->GetAnisotropy(), 8.0);
+  filter->SetOrientations(5);
+  EXPECT_EQ(filter->GetOrientations(), 4);
+  filter->SetOctaves(0);
+  EXPECT_EQ(filter->GetOctaves(), 1);
+  filter->SetPersistence(3.0);
+  EXPECT_EQ(filter->GetPersistence(), 1.0);
+  filter->SetTileSize(5000);
+  EXPECT_EQ(filter->GetTileSize(), 1024);
+  filter->SetMethod(17);
+  EXPECT_EQ(filter->GetMethod(), vtkPolyDataSubbandNoise::NONE);
+  filter->SetParameterization(-1);
+  EXPECT_EQ(filter->GetParameterization(), vtkPolyDataSubbandNoise::AUTOMATIC);
+  filter->SetPhase(2.25);
+  EXPECT_EQ(filter->GetPhase(), 0.25);
+  std::ostringstream text;
+  filter->Print(text);
+  EXPECT_NE(text.str().find("TileSize: 1024"), std::string::npos);
+}
+
+// The figure: the cow's texture is stretched from 0.007 to 1.7 repeats per unit.
+TEST(PolyDataSubbandNoise, SpotHasOneFrequency)
+{
+  const auto spot = ReadShared("spot.vtp");
+  if (!spot)
+  {
+    GTEST_SKIP() << "spot.vtp is not in " << STEERABLENOISE_SHARED_DATA;
+  }
+  std::string text;
+  const auto original = Noise(spot, 0.36, {}, &text);
+  EXPECT_TRUE(AllFinite(original));
+  EXPECT_NE(text.find("Of 5856 triangles 177 are folded over"), std::string::npos) << text;
+
+  vtkNew<vtkLoopSubdivisionFilter> subdivide;
+  subdivide->SetInputData(spot);
+  subdivide->SetNumberOfSubdivisions(3);
+  subdivide->Update();
+  vtkPolyData* fine = subdivide->GetOutput();
+
+  // Triangles in the order of their stretch.
+  struct Triangle
+  {
+    std::array<vtkIdType, 3> Points;
+    double Area;
+    double Stretch;
+    steerable::TextureGradients Gradients;
+    std::array<Eigen::Vector3d, 3> Places;
+  };
+  std::vector<Triangle> triangles;
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < fine->GetNumberOfCells(); ++cell)
+  {
+    fine->GetCellPoints(cell, ids);
+    Triangle t;
+    std::array<Eigen::Vector2d, 3> texture;
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      t.Points[corner] = ids->GetId(corner);
+      fine->GetPoint(t.Points[corner], t.Places[corner].data());
+      fine->GetPointData()->GetTCoords()->GetTuple(t.Points[corner], texture[corner].data());
+    }
+    steerable::TriangleGradients(t.Places, texture, false, t.Gradients);
+    t.Area = 0.5 * (t.Places[1] - t.Places[0]).cross(t.Places[2] - t.Places[0]).norm();
+    t.Stretch = std::sqrt(t.Gradients.col(0).cross(t.Gradients.col(1)).norm());
+    triangles.push_back(t);
+  }
+  std::sort(triangles.begin(), triangles.end(),
+    [](const Triangle& a, const Triangle& b) { return a.Stretch < b.Stretch; });
+  const std::size_t tenth = triangles.size() / 10;
+
+  // E |grad n| / E |n| over a tenth of the triangles, on the surface. For Gaussian noise it is the
+  // frequency up to a factor.
+  const auto frequency = [&](const std::vector<float>& noise, std::size_t first)
+  {
+    double slope = 0.0;
+    double height = 0.0;
+    for (std::size_t k = first; k < first + tenth; ++k)
+    {
+      const Triangle& t = triangles[k];
+      const Eigen::Vector3d a = t.Places[1] - t.Places[0];
+      const Eigen::Vector3d b = t.Places[2] - t.Places[0];
+      const double da = noise[t.Points[1]] - noise[t.Points[0]];
+      const double db = noise[t.Points[2]] - noise[t.Points[0]];
+      const double aa = a.dot(a), ab = a.dot(b), bb = b.dot(b);
+      const double det = aa * bb - ab * ab;
+      if (det > 0.0)
+      {
+        slope += t.Area * std::sqrt((da * da * bb - 2.0 * da * db * ab + db * db * aa) / det);
+        height += t.Area *
+          (std::abs(noise[t.Points[0]]) + std::abs(noise[t.Points[1]]) +
+            std::abs(noise[t.Points[2]])) /
+          3.0;
+      }
+    }
+    return slope / height;
+  };
+  const auto ratio = [&](int method, int tileSize)
+  {
+    const auto noise = Noise(
+      fine, 0.1,
+      [&](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetMethod(method);
+        filter->SetTileSize(tileSize);
+        filter->SetAntiAlias(false);
+      },
+      &text);
+    const double least = frequency(noise, 0);
+    const double most = frequency(noise, triangles.size() - tenth);
+    return std::max(least, most) / std::min(least, most);
+  };
+  const double without = ratio(vtkPolyDataSubbandNoise::NONE, 256);
+  const double with = ratio(vtkPolyDataSubbandNoise::LEAST_SQUARES, 256);
+  const double larger = ratio(vtkPolyDataSubbandNoise::LEAST_SQUARES, 512);
+  std::cout << "Frequency ratio of the most and the least stretched tenth: " << without
+            << " without, " << with << " with least squares, " << larger << " with larger tiles\n";
+  EXPECT_GT(without, 3.0);
+  EXPECT_LE(with, 1.35);
+  EXPECT_LE(larger, 1.35);
+}

@@ -1,0 +1,69 @@
+"""Utilities/animate.py makes a loop: frames differ, and after one period comes the first one again."""
+import os
+import runpy
+import sys
+import tempfile
+
+import numpy
+import plugintest as pt
+import steerablenoise  # so that the filter's own object has its methods
+from paraview import simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+from vtkmodules.vtkIOImage import vtkPNGReader
+
+FRAMES = 4
+
+
+def pixels(path):
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    sys.argv = ["animate.py", pt.WAKE, folder, str(FRAMES)]
+    made = runpy.run_path(os.path.join(pt.SOURCE, "Utilities", "animate.py"))
+    noise, view = made["noise"], made["view"]
+    paths = [os.path.join(folder, "frame_%04d.png" % i) for i in range(FRAMES)]
+    pt.check(sorted(os.listdir(folder)) == [os.path.basename(p) for p in paths], "the frames that were asked for")
+    frames = [pixels(path) for path in paths]
+    pt.check(min(frame.std() for frame in frames) > 20, "noise in every frame")
+    for i in range(FRAMES):
+        difference = abs(frames[i] - frames[(i + 1) % FRAMES]).mean()
+        pt.check(difference > 3, "frame %d differs from the next one, mean %g" % (i, difference))
+
+    # One period later the picture is the first one.
+    view.ViewTime = 1.0
+    later = os.path.join(folder, "later.png")
+    simple.SaveScreenshot(later, view)
+    pt.check(abs(pixels(later) - frames[0]).max() <= 1, "after one period comes the first frame")
+
+filter_object = noise.GetClientSideObject()
+offered = filter_object.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_RANGE())
+pt.check(tuple(offered) == (0.0, 1.0), "the filter offers the range of one loop, got %s" % (offered,))
+values = []
+for time in (0.0, 0.5, 1.0, 1.5):
+    simple.UpdatePipeline(time=time, proxy=noise)
+    values.append(pt.array(filter_object.GetOutput()))
+pt.check(abs(values[0] - values[2]).max() < 1e-3 and abs(values[1] - values[3]).max() < 1e-3, "the loop closes")
+pt.check(abs(values[0] - values[1]).max() > 0.5, "half a period is another picture")
+spread = [v.std() for v in values[:2]]
+pt.check(abs(spread[0] / spread[1] - 1.0) < 0.1, "contrast does not pulse: %s" % spread)
+# In the free stream, which flows to the right, the pattern moves to the right.
+simple.UpdatePipeline(time=0.01, proxy=noise)
+image = filter_object.GetOutput()
+columns, rows = image.GetDimensions()[0] - 1, image.GetDimensions()[1] - 1
+first, second = (v.reshape(rows, columns)[: rows // 6].astype(float) for v in (values[0], pt.array(image)))
+slope = numpy.gradient(0.5 * (first + second), axis=1)
+drift = -(slope * (second - first)).sum() / (slope**2).sum()
+pt.check(drift > 0.05, "the pattern moves downstream, %g samples" % drift)
+# Without TimePeriod time does not matter, and there is no range on offer.
+noise.TimePeriod = 0.0
+simple.UpdatePipeline(time=0.3, proxy=noise)
+still = pt.array(filter_object.GetOutput())
+simple.UpdatePipeline(time=0.6, proxy=noise)
+pt.check(bool((still == pt.array(filter_object.GetOutput())).all()), "still noise at any time")
+simple.Delete(view)
+pt.finish()

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# The C++ tests under sanitizers, and the fuzzers: bash Utilities/sanitize.sh [address|thread|fuzz ...]
+# FUZZ_SECONDS (default 60) is how long each fuzzer runs.
+. "$(dirname "${BASH_SOURCE[0]}")/build.sh"
+install_packages clang libclang-rt-dev
+vtk=$(dirname "$(ls /usr/lib/*/cmake/paraview-*/vtk/vtk-config.cmake /usr/lib/*/cmake/vtk-*/vtk-config.cmake 2>/dev/null | head -n 1)")
+common=(-DSTEERABLENOISE_PLUGIN=OFF -DSTEERABLENOISE_PYTHON=OFF -DSTEERABLENOISE_DATA=OFF
+  "-DVTK_DIR=$vtk" -DCMAKE_BUILD_TYPE=RelWithDebInfo)
+base=$build
+
+sanitize() { # name, flags: builds the C++ tests there
+  build=$base-$1
+  build_project "${common[@]}" -DBUILD_TESTING=ON "-DCMAKE_CXX_FLAGS=$2 -O1 -DSTEERABLENOISE_INSTRUMENTED -fno-omit-frame-pointer"
+}
+
+for what in "${@:-address thread fuzz}"; do
+  for kind in $what; do
+    case $kind in
+      address)
+        sanitize address "-fsanitize=address,undefined -fno-sanitize-recover=undefined"
+        # VTK and MPI keep some memory to the end; what is ours is checked for its use, not for leaks.
+        export ASAN_OPTIONS=detect_leaks=0
+        "$build/bin/SteerableNoiseKernelTests" --gtest_brief=1 --gtest_filter=-*NoiseQuality*
+        "$build/bin/SteerableNoiseFilterTests" --gtest_brief=1
+        ;;
+      thread)
+        sanitize thread "-fsanitize=thread"
+        "$build/bin/SteerableNoiseKernelTests" --gtest_brief=1 --gtest_filter=*Thread*
+        ;;
+      fuzz)
+        build=$base-fuzz
+        build_project "${common[@]}" -DBUILD_TESTING=OFF -DSTEERABLENOISE_FUZZERS=ON \
+          -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
+          "-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined -O1 -DSTEERABLENOISE_INSTRUMENTED -DHWY_COMPILE_ONLY_STATIC"
+        export ASAN_OPTIONS=detect_leaks=0
+        for fuzzer in "$build"/bin/Fuzz*; do
+          "$fuzzer" -max_total_time="${FUZZ_SECONDS:-60}" -timeout=20 -max_len=4096 -print_final_stats=1 2>&1 | tail -n 8
+        done
+        ;;
+    esac
+  done
+done

@@ -130,6 +130,7 @@ AxialMetric<N> MetricFromTensor(const NoiseParameters& parameters, const Matrix<
   metric.SecondAxis = N == 2 ? Vector<N>(metric.Direction.unitOrthogonal())
                              : Vector<N>(solver.eigenvectors().col(N / 2).normalized());
   metric.Second = N == 2 ? metric.Across : remap(lambda[N / 2]);
+  metric.Clarity = N == 2 ? 1.0 : (lambda[N - 1] - lambda[N / 2]) / spread;
   metric.Degenerate = false;
   return metric;
 }
@@ -142,7 +143,8 @@ void ApplyCurvature(AxialMetric<N>& metric, const Vector<N>& curvature)
     return;
   }
   // A unit vector only turns: what differences leave along the flow is their error.
-  const Vector<N> turning = curvature - curvature.dot(metric.Direction) * metric.Direction;
+  const Vector<N> turning =
+    metric.Clarity * (curvature - curvature.dot(metric.Direction) * metric.Direction);
   const double length = turning.norm();
   metric.Bend = length > 1.0 ? Vector<N>(turning / length) : turning;
   const double squared = std::min(1.0, length * length);

@@ -45,6 +45,11 @@ struct AxialMetric
   double Along = 1.0;
   double Across = 1.0;
   double Second = 1.0;
+  /**
+   * How clear the direction is, 0 to 1: a tensor whose two largest eigenvalues are nearly the same has
+   * a plane rather than a direction, and its curvature means nothing.
+   */
+  double Clarity = 1.0;
   /// Curvature vector of the streamline in cells, at most 1 long.
   Vector<N> Bend = Vector<N>::Zero();
   /// No direction could be had (zero, NaN, infinite or isotropic input): the metric is I.

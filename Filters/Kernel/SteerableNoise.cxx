@@ -132,6 +132,10 @@ EvaluationCounts SteerableNoise::EvaluateImage(const ImageGrid& grid, const Fiel
   {
     throw std::invalid_argument("An image takes neither normals nor curvature.");
   }
+  if (grid.CurvatureStride < 1 || grid.CurvatureStride > ImageGrid::MaximumStride)
+  {
+    throw std::invalid_argument("CurvatureStride must be from 1 to 16.");
+  }
   const NoiseSetup setup =
     MakeSetup(this->Parameters, this->Dimension, field, this->Parameters.FollowCurvature);
   return this->Dimension == 2

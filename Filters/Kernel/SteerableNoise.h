@@ -74,6 +74,12 @@ struct ImageGrid
   /// Index of the first sample of this piece: places come from indices, so pieces agree to the bit.
   std::array<std::int64_t, 3> FirstIndex = { 0, 0, 0 };
   std::array<std::int64_t, 3> Dimensions = { 1, 1, 1 };
+  /**
+   * Samples to either side that curvature is differenced over, 1 to MaximumStride: of a field that was
+   * interpolated to a finer grid, as many as lie between two of its own samples.
+   */
+  int CurvatureStride = 1;
+  static constexpr int MaximumStride = 16;
 
   std::size_t GetNumberOfRows() const
   {

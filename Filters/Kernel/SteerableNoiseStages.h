@@ -18,8 +18,8 @@ namespace steerable
 {
 /// Samples that go through the stages together: their arrays stay in the first-level cache.
 constexpr std::size_t BlockSize = 256;
-/// A block with one sample to either side, and room for a whole SIMD register behind.
-constexpr std::size_t BlockRoom = BlockSize + 2 + 32;
+/// A block with its neighbours to either side, and room for a whole SIMD register behind.
+constexpr std::size_t BlockRoom = BlockSize + 2 * ImageGrid::MaximumStride + 32;
 
 /// Places beyond this many cells, and those that are not finite, count as 0: 2^50.
 constexpr double FarthestCell = 1125899906842624.0;

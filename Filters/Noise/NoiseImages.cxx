@@ -97,8 +97,7 @@ void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int fac
   outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
 }
 
-void Magnify(
-  vtkImageData* input, vtkInformation*, vtkImageData* output, vtkInformation* outInfo, int factor)
+void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo, int factor)
 {
   int coarseExtent[6];
   input->GetExtent(coarseExtent);
@@ -110,8 +109,9 @@ void Magnify(
   for (int axis = 0; axis < 3; ++axis)
   {
     // What the input covers, even if a source gave less than it was asked for.
-    extent[2 * axis] = std::max(extent[2 * axis], coarseExtent[2 * axis] * factor);
-    extent[2 * axis + 1] = std::min(extent[2 * axis + 1], coarseExtent[2 * axis + 1] * factor);
+    extent[2 * axis] = std::max(extent[2 * axis] - factor, coarseExtent[2 * axis] * factor);
+    extent[2 * axis + 1] =
+      std::min(extent[2 * axis + 1] + factor, coarseExtent[2 * axis + 1] * factor);
     spacing[axis] = input->GetSpacing()[axis] / factor;
     fineDims[axis] = std::max(extent[2 * axis + 1] - extent[2 * axis] + 1, 0);
     coarseDims[axis] = coarseExtent[2 * axis + 1] - coarseExtent[2 * axis] + 1;

@@ -16,12 +16,12 @@ namespace noise
 void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int factor);
 
 /**
- * Fills `output` with that image over the update extent: point arrays interpolated linearly, cell
- * arrays repeated, except that floating-point cell arrays of 2 to 9 components (which may steer the
- * noise) are interpolated between cell centres.
+ * Fills `output` with that image over the update extent and one sample of the input around it, which
+ * curvature looks at. Point arrays are interpolated linearly and cell arrays repeated, except that
+ * floating-point cell arrays of 2 to 9 components (which may steer the noise) are interpolated between
+ * cell centres.
  */
-void Magnify(vtkImageData* input, vtkInformation* inInfo, vtkImageData* output,
-  vtkInformation* outInfo, int factor);
+void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo, int factor);
 
 /// Drops the border that curvature asked for, where an extent was requested.
 void CropToUpdateExtent(vtkDataSet* output, vtkInformation* outInfo);

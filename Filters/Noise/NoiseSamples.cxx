@@ -91,7 +91,8 @@ int GetSlabAxis(vtkDataSet* dataset)
 }
 } // namespace
 
-Samples::Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent)
+Samples::Samples(
+  vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent, int magnification)
   : DataSet(dataset)
   , Array(array)
   , Cells(cells)
@@ -99,6 +100,7 @@ Samples::Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int
   if (auto* image = vtkImageData::SafeDownCast(dataset))
   {
     this->SetGrid(image, wholeExtent);
+    this->Grid.CurvatureStride = magnification;
   }
   else
   {

@@ -26,9 +26,11 @@ class Samples
 public:
   /**
    * `cells`: the array belongs to the cells. `wholeExtent` tells whether an image is flat where the
-   * dataset is a piece of it; null: the dataset is all there is.
+   * dataset is a piece of it; null: the dataset is all there is. `magnification`: samples of an image
+   * for each one that its vectors were interpolated from.
    */
-  Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent);
+  Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent,
+    int magnification);
   ~Samples();
 
   vtkIdType GetNumberOfSamples() const;

@@ -68,25 +68,29 @@ auto ForEachPart(vtkAlgorithm* algorithm, std::size_t parts, vtkIdType samples,
   const std::size_t slice = std::max<std::size_t>(parts / 20 + 1, samplesPerSlice / perPart + 1);
   const std::size_t grain = samplesPerChunk / perPart + 1;
   std::mutex mutex;
-  WithThreads([&] {
-    for (std::size_t first = 0; first < parts; first += slice)
+  WithThreads(
+    [&]
     {
-      algorithm->UpdateProgress(
-        progressStart + progressShare * static_cast<double>(first) / static_cast<double>(parts));
-      if (algorithm->CheckAbort())
+      for (std::size_t first = 0; first < parts; first += slice)
       {
-        return;
+        algorithm->UpdateProgress(
+          progressStart + progressShare * static_cast<double>(first) / static_cast<double>(parts));
+        if (algorithm->CheckAbort())
+        {
+          return;
+        }
+        const std::size_t last = std::min(first + slice, parts);
+        vtkSMPTools::For(static_cast<vtkIdType>(first), static_cast<vtkIdType>(last),
+          static_cast<vtkIdType>(grain),
+          [&](vtkIdType begin, vtkIdType end)
+          {
+            const auto part =
+              evaluate(static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+            const std::lock_guard<std::mutex> lock(mutex);
+            sum += part;
+          });
       }
-      const std::size_t last = std::min(first + slice, parts);
-      vtkSMPTools::For(static_cast<vtkIdType>(first), static_cast<vtkIdType>(last),
-        static_cast<vtkIdType>(grain), [&](vtkIdType begin, vtkIdType end) {
-          const auto part =
-            evaluate(static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
-          const std::lock_guard<std::mutex> lock(mutex);
-          sum += part;
-        });
-    }
-  });
+    });
   return sum;
 }
 } // namespace noise

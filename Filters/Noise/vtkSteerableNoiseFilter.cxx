@@ -266,9 +266,9 @@ struct vtkSteerableNoiseFilter::Internals
   }
 
   void Process(const Block& block, const steerable::NoiseParameters& parameters,
-    const int* wholeExtent, double progressStart, double progressShare)
+    const int* wholeExtent, int magnification, double progressStart, double progressShare)
   {
-    noise::Samples samples(block.DataSet, block.Array, block.Cells, wholeExtent);
+    noise::Samples samples(block.DataSet, block.Array, block.Cells, wholeExtent, magnification);
     const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
     if (parameters.FollowCurvature)
     {
@@ -501,8 +501,7 @@ int vtkSteerableNoiseFilter::RequestData(
     hasWhole = image && outInfo->Has(SDDP::WHOLE_EXTENT());
     if (image && this->Magnification > 1)
     {
-      noise::Magnify(
-        image, inInfo, vtkImageData::SafeDownCast(output), outInfo, this->Magnification);
+      noise::Magnify(image, vtkImageData::SafeDownCast(output), outInfo, this->Magnification);
     }
     else
     {
@@ -554,7 +553,8 @@ int vtkSteerableNoiseFilter::RequestData(
     for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
     {
       internals.Process(blocks[i], parameters, hasWhole ? wholeExtent : nullptr,
-        static_cast<double>(i) / blocks.size(), 1.0 / blocks.size());
+        hasWhole ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
+        1.0 / blocks.size());
     }
   }
   catch (const std::exception& error)

@@ -283,6 +283,30 @@ TEST(SteerableNoiseFilter, StreamedInSevenPiecesGivesTheSameBits)
   }
 }
 
+TEST(SteerableNoiseFilter, MagnifiedPiecesGiveTheSameBits)
+{
+  Pipeline all(true);
+  all.Filter->SetMagnification(3);
+  all.Filter->Update();
+  vtkImageData* whole = all.GetOutput();
+  int extent[6];
+  whole->GetExtent(extent);
+  vtkIdType compared = 0;
+  const int rows = extent[3] - extent[2] + 1;
+  const int first = extent[2];
+  for (int piece = 0; piece < 7; ++piece)
+  {
+    extent[2] = first + piece * rows / 7;
+    extent[3] = first + (piece + 1) * rows / 7 - 1;
+    Pipeline part(true);
+    part.Filter->SetMagnification(3);
+    part.Filter->UpdateExtent(extent);
+    EXPECT_TRUE(std::equal(extent, extent + 6, part.GetOutput()->GetExtent())) << piece;
+    EXPECT_EQ(CountDifferences(part.GetOutput(), whole, compared), 0) << piece;
+  }
+  EXPECT_EQ(compared, whole->GetNumberOfPoints());
+}
+
 TEST(SteerableNoiseFilter, ThreadsGiveTheSameBits)
 {
   auto image = MakeImage(70, 60, 30);

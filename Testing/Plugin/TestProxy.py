@@ -24,7 +24,7 @@ for name, proxy in XML.items():
     grouped = {p.get("name") for group in proxy.iter("PropertyGroup") for p in group}
     for prop in properties:
         key = prop.get("name")
-        if prop.get("default_values") is None or not prop.get("command", "").startswith("Set"):
+        if prop.get("default_values") is None or prop.get("command") != "Set" + key:
             continue
         where = "%s.%s" % (name, key)
         # One default: XML and C++ share it.

@@ -40,7 +40,7 @@ namespace
 /// A dataset of the output that gets noise, and the array that steers it.
 struct Block
 {
-  vtkDataSet* DataSet;
+  vtkDataSet* DataSet = nullptr;
   vtkDataArray* Array = nullptr;
   bool Cells = false;
 };
@@ -170,7 +170,7 @@ vtkIdType CountDegenerateGhosts(const Block& block)
 
 struct vtkSteerableNoiseFilter::Internals
 {
-  vtkSteerableNoiseFilter* Self;
+  vtkSteerableNoiseFilter* Self = nullptr;
   steerable::EvaluationCounts Counts;
   vtkIdType Samples = 0;
   vtkIdType BlocksWithout = 0;
@@ -452,12 +452,14 @@ int vtkSteerableNoiseFilter::RequestData(
     return 0;
   }
 
-  Internals internals{ this };
+  Internals internals;
+  internals.Self = this;
   std::vector<Block> blocks;
   bool failed = false;
   const auto addBlock = [&](vtkDataSet* dataset, bool required)
   {
-    Block block{ dataset };
+    Block block;
+    block.DataSet = dataset;
     std::string why;
     if (internals.FindArray(block, why))
     {

@@ -161,13 +161,13 @@ UpdatePipeline(proxy=points)
 lic = convolved(image_of(points), 20)
 inside = crop(lic)
 middle, spread = inside[inside > 0].mean(), inside[inside > 0].std()
-finer = SteerableNoise(Input=points, SelectInputVectors=["POINTS", "velocity"], FeatureSize=0.08, Magnification=FINE, MaskThreshold=1e-6)
+finer = SteerableNoise(Input=points, SelectInputVectors=["POINTS", "velocity"], FeatureSize=0.08, Quality=8, Magnification=FINE, MaskThreshold=1e-6)
 UpdatePipeline(proxy=finer)
 image = image_of(finer)
 columns, rows, _ = image.GetDimensions()
 noise = vtk_to_numpy(image.GetPointData().GetArray("SteerableNoise")).reshape(rows, columns)
 sheet("noise_and_lic", [
-    ("Steerable Noise, FeatureSize 0.08, Quality 4", grey(crop(noise))),
+    ("Steerable Noise, FeatureSize 0.08, Quality 8", grey(crop(noise))),
     ("Line integral convolution, 20 steps of a pixel each way", grey(crop((lic - middle) / spread))),
 ])
 

@@ -4,6 +4,7 @@
 
 #include "MetricTensor.h"
 
+#include "vtkAppendFilter.h"
 #include "vtkCell.h"
 #include "vtkCellCenters.h"
 #include "vtkCellData.h"
@@ -20,6 +21,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkPolygon.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkSMPTools.h"
@@ -394,6 +396,14 @@ void Samples::ComputeCurvature()
   }
   vtkNew<vtkGradientFilter> gradient;
   gradient->SetInputData(geometry);
+  vtkNew<vtkAppendFilter> unstructured;
+  if (vtkPolyData::SafeDownCast(geometry))
+  {
+    // vtkGradientFilter's threads trip over surfaces with degenerate cells, not over the same cells in
+    // an unstructured grid (VTK 9.2).
+    unstructured->SetInputData(geometry);
+    gradient->SetInputConnection(unstructured->GetOutputPort());
+  }
   gradient->SetInputScalars(
     this->Cells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
     unit->GetName());

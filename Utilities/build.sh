@@ -45,13 +45,13 @@ mend_python_targets() {
   done
 }
 
-# build_project [cmake options]
+# build_project [cmake options]; `targets` names what to build if that is not everything
 build_project() {
   local log
   log=$(mktemp)
   cmake -S "$root" -B "$build" -G Ninja "$@" >"$log" 2>&1 || { cat "$log"; return 1; }
   rm -f "$log"
-  cmake --build "$build" -- --quiet
+  cmake --build "$build" ${targets:+--target $targets} -- --quiet
 }
 
 libraries=$build/lib

@@ -502,7 +502,8 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkI
   }
 }
 
-void AddSampleSpacing(vtkDataSet* dataset, double& largest, double& sum, double& count)
+void AddSampleSpacing(
+  vtkDataSet* dataset, vtkIdType cellsAtMost, double& largest, double& sum, double& count)
 {
   if (auto* image = vtkImageData::SafeDownCast(dataset))
   {
@@ -520,7 +521,7 @@ void AddSampleSpacing(vtkDataSet* dataset, double& largest, double& sum, double&
   // A slab's own thickness says nothing about the distance of its samples.
   const bool slab = GetSlabAxis(dataset) >= 0;
   const vtkIdType cells = dataset->GetNumberOfCells();
-  const vtkIdType step = 1 + cells / 1000000;
+  const vtkIdType step = 1 + cells / cellsAtMost;
   vtkUnsignedCharArray* ghosts = dataset->GetCellGhostArray();
   for (vtkIdType id = 0; id < cells; id += step)
   {

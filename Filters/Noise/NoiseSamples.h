@@ -76,9 +76,11 @@ private:
 
 /**
  * Typical distance of samples: the largest spacing of an image; for other datasets the sum over its
- * cells (ghosts left out) of diagonal / √dimension goes to `sum` and their number to `count`.
+ * cells (ghosts left out; evenly chosen if there are more than `cellsAtMost`) of diagonal / √dimension
+ * goes to `sum` and their number to `count`.
  */
-void AddSampleSpacing(vtkDataSet* dataset, double& largest, double& sum, double& count);
+void AddSampleSpacing(
+  vtkDataSet* dataset, vtkIdType cellsAtMost, double& largest, double& sum, double& count);
 } // namespace noise
 
 #endif

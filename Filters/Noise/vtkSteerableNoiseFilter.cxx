@@ -56,7 +56,8 @@ struct Extremes
 
   Extremes() { std::fill_n(this->Bounds, 6, std::numeric_limits<double>::infinity()); }
 
-  void Add(const Block& block)
+  /// `magnitude`: the longest vector is asked for. `exact`: the spacing decides more than a warning.
+  void Add(const Block& block, bool magnitude, bool exact)
   {
     if (block.DataSet->GetNumberOfPoints() > 0)
     {
@@ -71,11 +72,14 @@ struct Extremes
         }
       }
     }
-    double range[2];
-    block.Array->GetFiniteRange(range, -1);
-    this->LongestVector = std::max(this->LongestVector, range[1]);
-    noise::AddSampleSpacing(
-      block.DataSet, this->LargestSpacing, this->SpacingSum, this->SpacingCount);
+    if (magnitude)
+    {
+      double range[2];
+      block.Array->GetFiniteRange(range, -1);
+      this->LongestVector = std::max(this->LongestVector, range[1]);
+    }
+    noise::AddSampleSpacing(block.DataSet, exact ? 1000000 : 10000, this->LargestSpacing,
+      this->SpacingSum, this->SpacingCount);
   }
 
   void Reduce(vtkMultiProcessController* controller)
@@ -522,7 +526,7 @@ int vtkSteerableNoiseFilter::RequestData(
   Extremes extremes;
   for (const Block& block : blocks)
   {
-    extremes.Add(block);
+    extremes.Add(block, needsMagnitude, this->FeatureSize <= 0.0);
   }
   if (this->FeatureSize <= 0.0 || needsMagnitude)
   {

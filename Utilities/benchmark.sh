@@ -19,7 +19,7 @@ for case in "2 image 0 plain" "2 image 8 plain" "2 image 4 defaults" "2 points 0
   # shellcheck disable=SC2086
   text=$(valgrind --tool=callgrind --callgrind-out-file=/dev/null \
     --toggle-collect='steerable::SteerableNoise::Evaluate*' "$build/bin/evaluateOnce" AVX2 $case 2>&1)
-  points=$(grep -oE 'points [0-9]+' <<<"$text" | cut -d' ' -f2)
+  points=$(grep -oE '^points [0-9]+' <<<"$text" | cut -d' ' -f2)
   corners=$(grep -oE 'corners [0-9.]+' <<<"$text" | cut -d' ' -f2)
   count=$(grep -oE 'Collected : [0-9]+' <<<"$text" | grep -oE '[0-9]+')
   awk -v c="$case" -v n="$points" -v i="$count" -v k="$corners" \

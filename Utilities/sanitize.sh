@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The C++ tests under sanitizers, and the fuzzers: bash Utilities/sanitize.sh [address|thread|fuzz ...]
-# FUZZ_SECONDS (default 60) is how long each fuzzer runs. With SANITIZE_ALL=1 the address sanitizer also
+# FUZZ_SECONDS (default 60) is how long each fuzzer runs, FUZZ_SEED (default 1) where it starts. With SANITIZE_ALL=1 the address sanitizer also
 # gets the tests that only repeat much arithmetic; they take ten minutes more.
 . "$(dirname "${BASH_SOURCE[0]}")/build.sh"
 install_packages clang libclang-rt-dev
@@ -43,7 +43,10 @@ for what in "${@:-address thread fuzz}"; do
           "-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined $instrumented"
         export ASAN_OPTIONS=detect_leaks=0
         for fuzzer in "$build"/bin/Fuzz*; do
-          "$fuzzer" -max_total_time="${FUZZ_SECONDS:-60}" -timeout=20 -max_len=4096 -print_final_stats=1 2>&1 | tail -n 8
+          echo "$(basename "$fuzzer")"
+          "$fuzzer" -seed="${FUZZ_SEED:-1}" -max_total_time="${FUZZ_SECONDS:-60}" -timeout=20 -max_len=4096 \
+            -artifact_prefix="$build/" >"$fuzzer.log" 2>&1 || { tail -n 60 "$fuzzer.log"; exit 1; }
+          tail -n 1 "$fuzzer.log"
         done
         ;;
     esac

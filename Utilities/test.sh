@@ -4,5 +4,7 @@
 install_packages
 bash "$root/Utilities/check-layering.sh"
 build_project -DSTEERABLENOISE_DATA=ON -DBUILD_TESTING=ON
+# CI runs the sanitizers and the fuzzers too; by hand they are bash Utilities/sanitize.sh.
+[ "${CI:-}" != true ] || bash "$root/Utilities/sanitize.sh"
 cd "$build"
 ctest --output-on-failure "$@"

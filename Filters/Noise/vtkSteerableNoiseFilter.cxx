@@ -254,6 +254,17 @@ struct vtkSteerableNoiseFilter::Internals
         why = message.str();
         continue;
       }
+      const vtkIdType samples =
+        cells ? block.DataSet->GetNumberOfCells() : block.DataSet->GetNumberOfPoints();
+      if (array->GetNumberOfTuples() != samples)
+      {
+        std::ostringstream message;
+        message << "Array '" << (array->GetName() ? array->GetName() : "") << "' has "
+                << array->GetNumberOfTuples() << " tuples for " << samples
+                << (cells ? " cells" : " points") << ". Mend the data or choose another array.";
+        why = message.str();
+        continue;
+      }
       block.Array = array;
       block.Cells = cells;
       return true;

@@ -663,6 +663,25 @@ std::vector<Case> BadInput()
     Fine, named("a b, c"));
   add("ResultNameOfTheInput", image, Fine, [](F f) { f->SetResultArrayName("SteerableNoise"); });
 
+  // More points than memory holds, and arrays that do not fit: refused before anything is allocated.
+  for (const int tuples : { 0, 3 })
+  {
+    add("TwoToThe31PointsWith" + std::to_string(tuples) + "Tuples",
+      [=]
+      {
+        auto huge = vtkSmartPointer<vtkImageData>::New();
+        huge->SetDimensions(65536, 32769, 1);
+        vtkNew<vtkFloatArray> short3;
+        short3->SetName("velocity");
+        short3->SetNumberOfComponents(3);
+        short3->SetNumberOfTuples(tuples);
+        short3->Fill(1.0);
+        huge->GetPointData()->SetVectors(short3);
+        return vtkSmartPointer<vtkDataObject>(huge);
+      },
+      Failed);
+  }
+
   // Each geometry degenerate.
   const auto sized = [](int nx, int ny, int nz)
   { return [=] { return vtkSmartPointer<vtkDataObject>(MakeImage(nx, ny, nz)); }; };

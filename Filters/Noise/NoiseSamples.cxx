@@ -27,6 +27,7 @@
 #include "vtkSMPTools.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,106 @@ namespace noise
 {
 namespace
 {
+/// VTK's cells square and cube coordinates; past this they overflow.
+constexpr double LargestCoordinate = 1e50;
+
+bool IsUsable(vtkPoints* points, vtkIdType point)
+{
+  double x[3];
+  points->GetPoint(point, x);
+  return std::all_of(
+    x, x + 3, [](double value) { return std::abs(value) <= LargestCoordinate; });
+}
+
+/// Cells whose position is that of one of their simplices, of which VTK may find none.
+bool ConsistsOfSimplices(int cellType)
+{
+  return cellType == VTK_TRIANGLE_STRIP || cellType == VTK_CONVEX_POINT_SET;
+}
+
+/**
+ * The cells as VTK can take them: it writes out of bounds (VTK 9.2) where a strip or a convex point set
+ * is degenerate, and where higher-order cells have no finite coordinates. Cells with bad coordinates or
+ * without simplices become empty; where it is the points that have data (`cells` false), the simplices
+ * follow in their cell's place.
+ */
+vtkSmartPointer<vtkUnstructuredGrid> MendCells(vtkUnstructuredGrid* grid, bool cells)
+{
+  vtkPoints* points = grid->GetPoints();
+  vtkUnsignedCharArray* types = grid->GetDistinctCellTypesArray();
+  bool mend = false;
+  for (vtkIdType i = 0; !mend && i < types->GetNumberOfValues(); ++i)
+  {
+    mend = ConsistsOfSimplices(types->GetValue(i));
+  }
+  for (vtkIdType i = 0; !mend && i < points->GetNumberOfPoints(); ++i)
+  {
+    mend = !IsUsable(points, i);
+  }
+  if (!mend)
+  {
+    return grid;
+  }
+  auto mended = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  mended->SetPoints(points);
+  mended->Allocate(grid->GetNumberOfCells());
+  if (cells)
+  {
+    mended->GetCellData()->PassData(grid->GetCellData());
+  }
+  else
+  {
+    mended->GetPointData()->PassData(grid->GetPointData());
+  }
+  vtkNew<vtkIdList> ids;
+  vtkNew<vtkIdList> simplices;
+  vtkNew<vtkPoints> corners;
+  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
+  {
+    int type = grid->GetCellType(cell);
+    const int simplex = type == VTK_TRIANGLE_STRIP ? 3 : 4;
+    grid->GetCellPoints(cell, ids);
+    simplices->Reset();
+    bool keep = std::all_of(
+      ids->begin(), ids->end(), [&](vtkIdType point) { return IsUsable(points, point); });
+    if (keep && ConsistsOfSimplices(type))
+    {
+      grid->GetCell(cell)->Triangulate(0, simplices, corners);
+      keep = cells && simplices->GetNumberOfIds() > 0;
+    }
+    if (!keep)
+    {
+      type = VTK_EMPTY_CELL;
+      ids->Reset();
+    }
+    else if (type == VTK_POLYHEDRON)
+    {
+      grid->GetFaceStream(cell, ids);
+    }
+    mended->InsertNextCell(type, ids);
+    for (vtkIdType i = 0; !cells && i + simplex <= simplices->GetNumberOfIds(); i += simplex)
+    {
+      mended->InsertNextCell(
+        simplex == 3 ? VTK_TRIANGLE : VTK_TETRA, simplex, simplices->GetPointer(i));
+    }
+  }
+  return mended;
+}
+
+/// Stands in for the centre of a cell that VTK cannot find one of.
+void SetMeanOfPoints(vtkUnstructuredGrid* grid, vtkIdType cell, vtkDataArray* centers)
+{
+  vtkNew<vtkIdList> ids;
+  grid->GetCellPoints(cell, ids);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const vtkIdType point : *ids)
+  {
+    sum += Eigen::Map<const Eigen::Vector3d>(grid->GetPoint(point));
+  }
+  sum /= std::max<double>(1.0, ids->GetNumberOfIds());
+  centers->SetTuple(cell, sum.data());
+}
+
 bool IsGhostCell(vtkUnsignedCharArray* ghosts, vtkIdType cell)
 {
   return ghosts &&
@@ -197,7 +298,16 @@ void Samples::SetPoints()
     vtkNew<vtkDoubleArray> centers;
     centers->SetNumberOfComponents(3);
     centers->SetNumberOfTuples(this->DataSet->GetNumberOfCells());
-    vtkCellCenters::ComputeCellCenters(this->DataSet, centers);
+    auto* grid = vtkUnstructuredGrid::SafeDownCast(this->DataSet);
+    vtkSmartPointer<vtkUnstructuredGrid> mended = grid ? MendCells(grid, true) : nullptr;
+    vtkCellCenters::ComputeCellCenters(grid ? mended.Get() : this->DataSet, centers);
+    for (vtkIdType cell = 0; mended != grid && cell < mended->GetNumberOfCells(); ++cell)
+    {
+      if (mended->GetCellType(cell) == VTK_EMPTY_CELL)
+      {
+        SetMeanOfPoints(grid, cell, centers);
+      }
+    }
     this->CellCenters = centers;
     this->Positions = MakePositionReader(centers);
   }
@@ -394,16 +504,21 @@ void Samples::ComputeCurvature()
   {
     geometry->GetPointData()->AddArray(unit);
   }
-  vtkNew<vtkGradientFilter> gradient;
-  gradient->SetInputData(geometry);
-  vtkNew<vtkAppendFilter> unstructured;
   if (vtkPolyData::SafeDownCast(geometry))
   {
     // vtkGradientFilter's threads trip over surfaces with degenerate cells, not over the same cells in
     // an unstructured grid (VTK 9.2).
+    vtkNew<vtkAppendFilter> unstructured;
     unstructured->SetInputData(geometry);
-    gradient->SetInputConnection(unstructured->GetOutputPort());
+    unstructured->Update();
+    geometry = unstructured->GetOutput();
   }
+  if (auto* grid = vtkUnstructuredGrid::SafeDownCast(geometry))
+  {
+    geometry = MendCells(grid, this->Cells);
+  }
+  vtkNew<vtkGradientFilter> gradient;
+  gradient->SetInputData(geometry);
   gradient->SetInputScalars(
     this->Cells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
     unit->GetName());

@@ -88,11 +88,11 @@ vtkSmartPointer<vtkDataSet> TakeDataSet(FuzzBytes& bytes)
       surface->SetPoints(TakePoints(bytes, count));
       surface->AllocateEstimate(8, 4);
       const int types[] = { VTK_VERTEX, VTK_LINE, VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON,
-        VTK_TRIANGLE_STRIP };
-      const int sizes[] = { 1, 2, 3, 4, 5, 6 };
+        VTK_TRIANGLE_STRIP, VTK_POLY_LINE, VTK_POLY_VERTEX };
+      const int sizes[] = { 1, 2, 3, 4, 5, 6, 4, 3 };
       for (int cell = bytes.TakeBelow(6); cell > 0; --cell)
       {
-        const int kind = bytes.TakeBelow(6);
+        const int kind = bytes.TakeBelow(8);
         vtkIdType ids[6];
         for (vtkIdType& id : ids)
         {
@@ -107,15 +107,24 @@ vtkSmartPointer<vtkDataSet> TakeDataSet(FuzzBytes& bytes)
       auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
       grid->SetPoints(TakePoints(bytes, count));
       const int types[] = { VTK_TETRA, VTK_HEXAHEDRON, VTK_WEDGE, VTK_PYRAMID, VTK_TRIANGLE,
-        VTK_QUAD, VTK_LINE, VTK_VERTEX, VTK_VOXEL };
-      const int sizes[] = { 4, 8, 6, 5, 3, 4, 2, 1, 8 };
+        VTK_QUAD, VTK_LINE, VTK_VERTEX, VTK_VOXEL, VTK_PIXEL, VTK_POLYGON, VTK_TRIANGLE_STRIP,
+        VTK_CONVEX_POINT_SET, VTK_QUADRATIC_TRIANGLE, VTK_QUADRATIC_TETRA, VTK_BIQUADRATIC_QUAD,
+        VTK_POLYHEDRON };
+      const int sizes[] = { 4, 8, 6, 5, 3, 4, 2, 1, 8, 4, 5, 6, 7, 6, 10, 9, 4 };
       for (int cell = bytes.TakeBelow(6); cell > 0; --cell)
       {
-        const int kind = bytes.TakeBelow(9);
-        vtkIdType ids[8];
+        const int kind = bytes.TakeBelow(17);
+        vtkIdType ids[10];
         for (vtkIdType& id : ids)
         {
           id = bytes.TakeBelow(count);
+        }
+        if (types[kind] == VTK_POLYHEDRON)
+        {
+          const vtkIdType faces[] = { 3, ids[0], ids[1], ids[2], 3, ids[0], ids[1], ids[3], 3,
+            ids[0], ids[2], ids[3], 3, ids[1], ids[2], ids[3] };
+          grid->InsertNextCell(VTK_POLYHEDRON, 4, ids, 4, faces);
+          continue;
         }
         grid->InsertNextCell(types[kind], sizes[kind], ids);
       }

@@ -82,14 +82,16 @@ NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field
     p.Gradients != GradientSet::Uniform || p.Motion || !p.AnisotropicWeight;
   setup.Biaxial = dimension == 3 && (field.Tensors || field.Normals);
   setup.Curved = curved;
-  setup.SingleCell = p.Quality == 0 && p.LatticeWindow && !setup.Biaxial && !curved &&
+  setup.SingleCell = p.Quality == 0 && !setup.Variant && p.LatticeWindow && !setup.Biaxial && !curved &&
     p.Normalize == Normalization::None;
   setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;
   const bool jittered = p.Grid == Lattice::Jittered;
   const bool streaks = p.Surflet == Basis::Streaks && !jittered;
   setup.JitterDown = streaks ? 0.5f : 0.0f;
   setup.JitterUp = jittered ? 1.0f : setup.JitterDown;
-  setup.JitterRadius = setup.JitterUp * std::sqrt(static_cast<float>(dimension));
+  setup.JitterMiddle = 0.5f * (setup.JitterUp - setup.JitterDown);
+  setup.JitterRadius =
+    0.5f * (setup.JitterUp + setup.JitterDown) * std::sqrt(static_cast<float>(dimension));
   const Matrix<3> steps3 = LatticeSteps<3>(p.Grid);
   const Matrix<2> steps2 = LatticeSteps<2>(p.Grid);
   Matrix<3> steps = Matrix<3>::Identity();

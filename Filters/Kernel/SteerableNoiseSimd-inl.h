@@ -214,35 +214,30 @@ HWY_INLINE V StreakProfile(V sigma)
 
 // ---- corners ------------------------------------------------------------------------------------
 
-/// Gradients of the lattice rows around a row of pixels, hashed once and kept while they serve.
+/// Gradients of the lattice rows on both sides of a row of pixels, hashed once and kept while they serve.
 template <int N>
 class GradientRows
 {
 public:
-  /// Columns [firstColumn, firstColumn + columns); rows within `reach` of the pixels' cell.
-  GradientRows(const OctaveSetup& octave, std::int64_t firstColumn, std::size_t columns, int reach)
+  /// Columns [firstColumn, firstColumn + columns).
+  GradientRows(const OctaveSetup& octave, std::int64_t firstColumn, std::size_t columns)
     : Octave(octave)
     , FirstColumn(firstColumn)
     , Stride((columns + Lanes - 1) / Lanes * Lanes + Lanes)
-    , Reach(reach)
-    , Side(2 * reach + 2)
-    , Slots(N == 3 ? Side * Side : Side)
     , Gradients(static_cast<std::size_t>(Slots) * N * Stride)
     , Tags(Slots, { INT64_MIN, INT64_MIN })
-    , Rows(Slots)
   {
   }
 
-  /// Makes the rows around the cell (y, z) ready.
+  /// Makes the rows of the cell (y, z) ready.
   void MoveTo(std::int64_t y, std::int64_t z)
   {
-    const int low = -this->Reach;
-    for (int slot = 0; slot < this->Slots; ++slot)
+    for (int slot = 0; slot < Slots; ++slot)
     {
-      const std::int64_t row = y + low + slot % this->Side;
-      const std::int64_t slice = N == 3 ? z + low + slot / this->Side : 0;
-      const int home = Modulo(row) + (N == 3 ? this->Side * Modulo(slice) : 0);
-      float* gradients = this->Gradients.data() + static_cast<std::size_t>(home) * N * this->Stride;
+      const std::int64_t row = y + slot % 2;
+      const std::int64_t slice = N == 3 ? z + slot / 2 : 0;
+      const auto home = static_cast<std::size_t>((row & 1) + 2 * (slice & 1));
+      float* gradients = this->Gradients.data() + home * N * this->Stride;
       if (this->Tags[home][0] != row || this->Tags[home][1] != slice)
       {
         this->Tags[home] = { row, slice };
@@ -252,21 +247,12 @@ public:
     }
   }
 
-  /// The row at this offset from the cell; each of its N components is GetStride() long.
-  const float* GetRow(int oy, int oz) const
-  {
-    return this->Rows[(oy + this->Reach) + (N == 3 ? this->Side * (oz + this->Reach) : 0)];
-  }
+  /// The row at this offset, 0 or 1, from the cell; each of its N components is GetStride() long.
+  const float* GetRow(int oy, int oz) const { return this->Rows[oy + 2 * oz]; }
 
   std::size_t GetStride() const { return this->Stride; }
 
 private:
-  int Modulo(std::int64_t index) const
-  {
-    const int rest = static_cast<int>(index % this->Side);
-    return rest < 0 ? rest + this->Side : rest;
-  }
-
   void HashRow(std::int64_t row, std::int64_t slice, float* gradients) const
   {
     const auto& period = this->Octave.Period;
@@ -292,13 +278,11 @@ private:
 
   OctaveSetup Octave;
   std::int64_t FirstColumn;
+  static constexpr int Slots = 1 << (N - 1);
   std::size_t Stride;
-  int Reach;
-  int Side;
-  int Slots;
   std::vector<float> Gradients;
   std::vector<std::array<std::int64_t, 2>> Tags;
-  std::vector<const float*> Rows;
+  std::array<const float*, Slots> Rows;
 };
 
 /// Corners of neighbouring pixels: gradients come from rows, permuted to the lanes.
@@ -312,11 +296,12 @@ public:
   {
   }
 
-  /// `columns` of the lanes' cells, counted from the first column of the rows.
-  HWY_INLINE void SetCells(const std::uint32_t* columns)
+  /// The lanes' cells; those along x are counted from the first column of the rows.
+  HWY_INLINE void SetCells(const VU (&cells)[N])
   {
-    this->First = columns[0];
-    this->Lane = hn::Sub(hn::LoadU(DU(), columns), hn::Set(DU(), this->First));
+    const std::uint32_t first = hn::GetLane(cells[0]);
+    this->First = first;
+    this->Lane = hn::Sub(cells[0], hn::Set(DU(), first));
   }
   HWY_INLINE void SelectRow(int oy, int oz) { this->Row = this->Rows.GetRow(oy, oz) + this->First; }
   HWY_INLINE void GetGradient(int ox, V (&g)[N]) const
@@ -335,77 +320,64 @@ private:
   VU Lane;
 };
 
+/// Cells come wrapped, so few steps bring an index near them back into [0, period).
+HWY_NOINLINE VU WrapIndex(VU index, std::int64_t period)
+{
+  const VI cells = hn::Set(DI(), static_cast<std::int32_t>(period));
+  VI i = hn::BitCast(DI(), index);
+  for (;;)
+  {
+    const auto below = hn::Lt(i, hn::Zero(DI()));
+    const auto above = hn::Not(hn::Lt(i, cells));
+    if (hn::AllFalse(DI(), below) && hn::AllFalse(DI(), above))
+    {
+      return hn::BitCast(DU(), i);
+    }
+    i = hn::IfThenElse(below, hn::Add(i, cells), hn::IfThenElse(above, hn::Sub(i, cells), i));
+  }
+}
+
 /// Corners of samples anywhere: hashed lane by lane.
 template <int N>
 class LaneCorners
 {
 public:
-  HWY_INLINE LaneCorners(const OctaveSetup& octave, GradientSet gradients)
+  HWY_INLINE explicit LaneCorners(const OctaveSetup& octave)
     : Octave(octave)
-    , Gradients(gradients)
     , Row(hn::Zero(DU()))
   {
   }
 
-  HWY_INLINE void SetCells(const std::uint32_t* x, const std::uint32_t* y, const std::uint32_t* z)
+  HWY_INLINE void SetCells(const VU (&cells)[N])
   {
-    this->Cell[0] = hn::LoadU(DU(), x);
-    this->Cell[1] = hn::LoadU(DU(), y);
-    this->Cell[2] = N == 3 ? hn::LoadU(DU(), z) : hn::Zero(DU());
+    for (int axis = 0; axis < N; ++axis)
+    {
+      this->Cell[axis] = cells[axis];
+    }
   }
   HWY_INLINE void SelectRow(int oy, int oz)
   {
     VU row = hn::Xor(HashOneAxis(this->GetIndex(1, oy), 1), hn::Set(DU(), this->Octave.Seed));
-    if (N == 3)
+    if constexpr (N == 3)
     {
       row = hn::Xor(row, HashOneAxis(this->GetIndex(2, oz), 2));
     }
     this->Row = row;
   }
-  HWY_INLINE VU GetHash(int ox) const
+  HWY_INLINE void GetGradient(int ox, V (&g)[N]) const
   {
-    return HashJoinAxes(hn::Xor(HashOneAxis(this->GetIndex(0, ox), 0), this->Row));
-  }
-  HWY_INLINE void GetGradient(int ox, V (&g)[N]) const { UniformGradient(this->GetHash(ox), g); }
-  HWY_INLINE void GetGradient(VU hash, V (&g)[N]) const
-  {
-    if (this->Gradients == GradientSet::Perlin)
-    {
-      PerlinGradient<N>(hash, g);
-    }
-    else
-    {
-      UniformGradient(hash, g);
-    }
+    UniformGradient(HashJoinAxes(hn::Xor(HashOneAxis(this->GetIndex(0, ox), 0), this->Row)), g);
   }
 
 private:
   HWY_INLINE VU GetIndex(int axis, int offset) const
   {
-    VU index = hn::Add(this->Cell[axis], hn::Set(DU(), static_cast<std::uint32_t>(offset)));
-    return this->Octave.Period[axis] > 0 ? this->Wrap(index, this->Octave.Period[axis]) : index;
-  }
-
-  /// Cells come wrapped, so few steps bring an index near them back into [0, period).
-  static HWY_NOINLINE VU Wrap(VU index, std::int64_t period)
-  {
-    const VI cells = hn::Set(DI(), static_cast<std::int32_t>(period));
-    VI i = hn::BitCast(DI(), index);
-    for (;;)
-    {
-      const auto below = hn::Lt(i, hn::Zero(DI()));
-      const auto above = hn::Not(hn::Lt(i, cells));
-      if (hn::AllFalse(DI(), below) && hn::AllFalse(DI(), above))
-      {
-        return hn::BitCast(DU(), i);
-      }
-      i = hn::IfThenElse(below, hn::Add(i, cells), hn::IfThenElse(above, hn::Sub(i, cells), i));
-    }
+    const VU index = hn::Add(this->Cell[axis], hn::Set(DU(), static_cast<std::uint32_t>(offset)));
+    return this->Octave.Period[axis] > 0 ? WrapIndex(index, this->Octave.Period[axis]) : index;
   }
 
   const OctaveSetup& Octave;
-  GradientSet Gradients;
-  VU Cell[3];
+  VU Cell[N];
   VU Row;
 };
 
@@ -602,603 +574,17 @@ WALK_INLINE V SumOverCell(const Frame<N>& frame, const V (&f)[N], Corners& corne
   return noise;
 }
 
-/**
- * Any Quality and any variant: walks the lattice rows that meet the surflets' reach and, on each, the
- * interval of corners that can lie inside.
- */
-template <int N, bool Variant, class Corners>
-class Walk
-{
-public:
-  WALK_INLINE Walk(
-    const NoiseSetup& setup, const Frame<N>& frame, const V (&f)[N], Corners& corners)
-    : Setup(setup)
-    , Params(setup.Parameters)
-    , F(frame)
-    , Corner(corners)
-    , Straight(!setup.Curved &&
-        !(Variant && (Params.Motion || Params.Surflet == Basis::Streaks || setup.JitterRadius > 0)))
-    , InverseReach(Const(1.0f / (Params.Quality + 1)))
-  {
-    for (int axis = 0; axis < N; ++axis)
-    {
-      this->Fraction[axis] = f[axis];
-      this->Step[axis] = Const(
-        Variant ? static_cast<float>(setup.LatticeSteps[axis][0]) : (axis == 0 ? 1.0f : 0.0f));
-    }
-    this->RootAlong = hn::Sqrt(frame.Along);
-    if constexpr (N == 2)
-    {
-      const V product = hn::Mul(frame.U[1], f[0]);
-      this->CrossFraction =
-        hn::Sub(hn::MulSub(frame.U[0], f[1], product), hn::MulSub(frame.U[1], f[0], product));
-    }
-    this->SetReach();
-  }
+#include "SteerableNoiseWalk-inl.h"
 
-  WALK_INLINE V Evaluate(std::uint64_t& visited)
-  {
-    int zLow = 0;
-    int zHigh = 0;
-    if constexpr (N == 3)
-    {
-      this->GetRange(2, zLow, zHigh);
-    }
-    int yLow = 0;
-    int yHigh = 0;
-    this->GetRange(1, yLow, yHigh);
-    this->GetExtent(0, this->BoxLow, this->BoxHigh);
-    if (this->Straight)
-    {
-      this->SetQuadratic();
-    }
-    for (int oz = zLow; oz <= zHigh; ++oz)
-    {
-      for (int oy = yLow; oy <= yHigh; ++oy)
-      {
-        this->VisitRow(oy, oz, visited);
-      }
-    }
-    return Normalized(this->Setup, this->Total);
-  }
-
-private:
-  /// Half-length along the flow and half-width across it, travel included.
-  WALK_INLINE void SetReach()
-  {
-    const float support = this->Setup.Support;
-    float along = std::sqrt(support);
-    float across = along;
-    if constexpr (Variant)
-    {
-      if (this->Params.Surflet == Basis::Streaks)
-      {
-        along = 1.0f;
-        across = support;
-      }
-      if (this->Params.Motion)
-      {
-        along += 0.5f * std::abs(static_cast<float>(this->Params.Speed));
-      }
-    }
-    // A little more than needed: every lane must visit all its own corners, whatever rounding does.
-    const V slack = Const(1e-3f);
-    V across2 = this->F.Across;
-    if (this->Setup.Biaxial)
-    {
-      across2 = hn::Min(across2, this->F.Second);
-    }
-    this->HalfLength = hn::Add(hn::Div(Const(along), this->RootAlong), slack);
-    this->HalfWidth = hn::Add(hn::Div(Const(across), hn::Sqrt(across2)), slack);
-    if constexpr (Variant)
-    {
-      // The corner that jitter moves into reach stands up to its radius away, and as much more as the
-      // sag of the bend changes over that radius.
-      const V radius = Const(this->Setup.JitterRadius);
-      this->HalfLength = hn::Add(this->HalfLength, radius);
-      const V bend = hn::Sqrt(Dot(this->F.Bend, this->F.Bend));
-      this->HalfWidth =
-        hn::Add(this->HalfWidth, hn::MulAdd(hn::Mul(radius, bend), this->HalfLength, radius));
-    }
-  }
-
-  /// Bounds of the reach along one index axis of the lattice, as offsets from the sample's cell.
-  WALK_INLINE void GetExtent(int axis, V& low, V& high) const
-  {
-    // w: how the index grows with the place.
-    V w[N];
-    float w2 = 1.0f;
-    V along = this->F.U[axis];
-    V bend = this->F.Bend[axis];
-    if constexpr (Variant)
-    {
-      w2 = 0.0f;
-      for (int i = 0; i < N; ++i)
-      {
-        const auto component = static_cast<float>(this->Setup.LatticeIndices[axis][i]);
-        w[i] = Const(component);
-        w2 += component * component;
-      }
-      along = Dot(w, this->F.U);
-      bend = Dot(w, this->F.Bend);
-    }
-    const V across = hn::Sqrt(hn::Max(hn::NegMulAdd(along, along, Const(w2)), Const(0.0f)));
-    const V zero = Const(0.0f);
-    V half;
-    if (this->Straight)
-    {
-      // The ellipsoid's own extent, the root of wT G^-1 w.
-      const V a = hn::Mul(along, this->HalfLength);
-      const V c = hn::Mul(across, this->HalfWidth);
-      half = hn::Sqrt(hn::MulAdd(a, a, hn::Mul(c, c)));
-      low = hn::Neg(half);
-      high = half;
-    }
-    else
-    {
-      half = hn::MulAdd(hn::Abs(along), this->HalfLength, hn::Mul(across, this->HalfWidth));
-      const V sag =
-        hn::Mul(hn::Mul(Const(0.5f), hn::Mul(this->HalfLength, this->HalfLength)), bend);
-      low = hn::Sub(hn::Min(sag, zero), half);
-      high = hn::Add(hn::Max(sag, zero), half);
-    }
-    if (!this->Params.AnisotropicWeight)
-    {
-      high = Const(1e9f);
-      low = hn::Neg(high);
-    }
-    // The window is a box of places; oblique indices need √3 times as many to cover it.
-    const float reach =
-      this->Setup.WindowReach * (this->Params.Grid == Lattice::Simplicial ? 1.75f : 1.0f);
-    low = hn::Max(low, Const(-reach - this->Setup.JitterUp));
-    high = hn::Min(high, Const(reach + this->Setup.JitterDown));
-    low = hn::Add(this->Fraction[axis], low);
-    high = hn::Add(this->Fraction[axis], high);
-  }
-
-  /// The same as whole numbers, for all lanes together.
-  WALK_INLINE void GetRange(int axis, int& low, int& high) const
-  {
-    V lowest;
-    V highest;
-    this->GetExtent(axis, lowest, highest);
-    low = ToCorner(std::ceil(LeastLane(lowest)));
-    high = ToCorner(std::floor(GreatestLane(highest)));
-  }
-
-  /// Coefficients of q along a row that are the same for all rows.
-  WALK_INLINE void SetQuadratic()
-  {
-    const V c = hn::Sub(this->F.Along, this->F.Across);
-    const V cu = hn::Mul(c, Dot(this->Step, this->F.U));
-    for (int i = 0; i < N; ++i)
-    {
-      this->GStep[i] = hn::MulAdd(cu, this->F.U[i], hn::Mul(this->F.Across, this->Step[i]));
-    }
-    if (this->Setup.Biaxial)
-    {
-      const V em = hn::Mul(hn::Sub(this->F.Second, this->F.Across), Dot(this->Step, this->F.M));
-      for (int i = 0; i < N; ++i)
-      {
-        this->GStep[i] = hn::MulAdd(em, this->F.M[i], this->GStep[i]);
-      }
-    }
-    this->QuadraticA = Dot(this->Step, this->GStep);
-    this->InverseA = hn::Div(Const(1.0f), this->QuadraticA);
-  }
-
-  /// Offset of the corner with ox = 0 of a row.
-  WALK_INLINE void SetRow(int oy, int oz)
-  {
-    if constexpr (Variant)
-    {
-      const V o[3] = { hn::Neg(this->Fraction[0]),
-        hn::Sub(Const(static_cast<float>(oy)), this->Fraction[1]),
-        N == 3 ? hn::Sub(Const(static_cast<float>(oz)), this->Fraction[N - 1]) : hn::Zero(DF()) };
-      for (int i = 0; i < N; ++i)
-      {
-        this->RowV[i] = hn::Zero(DF());
-        for (int j = 0; j < N; ++j)
-        {
-          this->RowV[i] = hn::MulAdd(
-            Const(static_cast<float>(this->Setup.LatticeSteps[i][j])), o[j], this->RowV[i]);
-        }
-      }
-    }
-    else
-    {
-      this->RowV[0] = hn::Neg(this->Fraction[0]);
-      const V row = Const(static_cast<float>(oy));
-      this->RowV[1] = hn::Sub(row, this->Fraction[1]);
-      if constexpr (N == 2)
-      {
-        // u x v for a far corner is a small difference of large products. The high parts of u have
-        // 16 bits, so their products with corners and the difference are exact.
-        this->CrossRow = hn::Mul(this->F.UHigh[0], row);
-        this->CrossRest = hn::MulSub(this->F.ULow[0], row, this->CrossFraction);
-      }
-      if constexpr (N == 3)
-      {
-        this->RowV[2] = hn::Sub(Const(static_cast<float>(oz)), this->Fraction[2]);
-      }
-    }
-  }
-
-  /// Interval of q < Support: the roots of a quadratic.
-  WALK_INLINE void CutByEllipsoid(V& low, V& high) const
-  {
-    const V s = Dot(this->RowV, this->F.U);
-    V q = hn::Mul(this->F.Across, Dot(this->RowV, this->RowV));
-    q = hn::MulAdd(hn::Mul(hn::Sub(this->F.Along, this->F.Across), s), s, q);
-    if (this->Setup.Biaxial)
-    {
-      const V r = Dot(this->RowV, this->F.M);
-      q = hn::MulAdd(hn::Mul(hn::Sub(this->F.Second, this->F.Across), r), r, q);
-    }
-    const V B = Dot(this->RowV, this->GStep);
-    const V C = hn::Sub(q, Const(this->Setup.Support + 1e-3f));
-    const V discriminant = hn::NegMulAdd(this->QuadraticA, C, hn::Mul(B, B));
-    const V root = hn::Sqrt(hn::Max(discriminant, Const(0.0f)));
-    const auto outside = hn::Lt(discriminant, Const(0.0f));
-    low = hn::Max(low, hn::Mul(hn::Neg(hn::Add(B, root)), this->InverseA));
-    high = hn::Min(high, hn::Mul(hn::Sub(root, B), this->InverseA));
-    high = hn::IfThenElse(outside, Const(-1e9f), high);
-  }
-
-  /**
-   * Interval of a bent surflet: a slab along the flow, then a tube around the parabola, whose sag is
-   * known within a band once the slab has bounded the distance along the flow.
-   */
-  WALK_INLINE void CutByTube(V& low, V& high) const
-  {
-    const V one = Const(1.0f);
-    const V s0 = Dot(this->RowV, this->F.U);
-    const V se = Dot(this->Step, this->F.U);
-    const V safe = hn::CopySign(hn::Max(hn::Abs(se), Const(1e-6f)), se);
-    const V inverse = hn::Div(one, safe);
-    const V middle = hn::Neg(hn::Mul(s0, inverse));
-    const V half = hn::Abs(hn::Mul(this->HalfLength, inverse));
-    low = hn::Max(low, hn::Sub(middle, half));
-    high = hn::Min(high, hn::Add(middle, half));
-
-    const V first = hn::MulAdd(low, se, s0);
-    const V last = hn::MulAdd(high, se, s0);
-    const V first2 = hn::Mul(first, first);
-    const V last2 = hn::Mul(last, last);
-    const V most = hn::Max(first2, last2);
-    const V least = hn::IfThenElse(
-      hn::Lt(hn::Mul(first, last), Const(0.0f)), Const(0.0f), hn::Min(first2, last2));
-    const V quarter = Const(0.25f);
-    const V sag = hn::Mul(quarter, hn::Add(most, least));
-    const V bend2 = Dot(this->F.Bend, this->F.Bend);
-    const V width =
-      hn::MulAdd(hn::Mul(quarter, hn::Sub(most, least)), hn::Sqrt(bend2), this->HalfWidth);
-
-    // |t0 + x te| < width with t the part across the flow, t0 shifted by the sag.
-    V t0[N];
-    V te[N];
-    for (int i = 0; i < N; ++i)
-    {
-      t0[i] = hn::NegMulAdd(sag, this->F.Bend[i], hn::NegMulAdd(s0, this->F.U[i], this->RowV[i]));
-      te[i] = hn::NegMulAdd(se, this->F.U[i], this->Step[i]);
-    }
-    const V A = hn::Max(Dot(te, te), Const(1e-6f));
-    const V B = Dot(t0, te);
-    const V C = hn::NegMulAdd(width, width, Dot(t0, t0));
-    const V discriminant = hn::NegMulAdd(A, C, hn::Mul(B, B));
-    const V inverseA = hn::Div(one, A);
-    const V root = hn::Mul(hn::Sqrt(hn::Max(discriminant, Const(0.0f))), inverseA);
-    const V center = hn::Neg(hn::Mul(B, inverseA));
-    const V slack = Const(1e-3f);
-    low = hn::Max(low, hn::Sub(hn::Sub(center, root), slack));
-    high = hn::Min(high, hn::Add(hn::Add(center, root), slack));
-    high = hn::IfThenElse(hn::Lt(discriminant, Const(0.0f)), Const(-1e9f), high);
-  }
-
-  WALK_INLINE void VisitRow(int oy, int oz, std::uint64_t& visited)
-  {
-    this->SetRow(oy, oz);
-    V low = this->BoxLow;
-    V high = this->BoxHigh;
-    if (this->Params.AnisotropicWeight)
-    {
-      if (this->Straight)
-      {
-        this->CutByEllipsoid(low, high);
-      }
-      else
-      {
-        this->CutByTube(low, high);
-      }
-    }
-    // Lanes with nothing on this row must not widen the others' interval.
-    const auto empty = hn::Gt(low, high);
-    if (hn::AllTrue(DF(), empty))
-    {
-      return;
-    }
-    const int first = ToCorner(std::ceil(LeastLane(hn::IfThenElse(empty, Const(1e9f), low))));
-    const int last = ToCorner(std::floor(GreatestLane(hn::IfThenElse(empty, Const(-1e9f), high))));
-    if (first > last)
-    {
-      return;
-    }
-    visited += last - first + 1;
-    this->Corner.SelectRow(oy, oz);
-    if constexpr (!Variant)
-    {
-      this->RowWindow = Const(1.0f);
-      if (this->Params.LatticeWindow)
-      {
-        for (int axis = 1; axis < N; ++axis)
-        {
-          const V factor = QuinticFade(hn::Mul(hn::Abs(this->RowV[axis]), this->InverseReach));
-          this->RowWindow = axis == 1 ? factor : hn::Mul(this->RowWindow, factor);
-        }
-      }
-    }
-    for (int ox = first; ox <= last; ++ox)
-    {
-      this->AddSurflet(ox);
-    }
-  }
-
-  WALK_INLINE V GetWindow(const V (&v)[N]) const
-  {
-    if (!this->Params.LatticeWindow)
-    {
-      return Const(1.0f);
-    }
-    if constexpr (!Variant)
-    {
-      return hn::Mul(this->RowWindow, QuinticFade(hn::Mul(hn::Abs(v[0]), this->InverseReach)));
-    }
-    else
-    {
-      const Fade fade = this->Params.Interpolant;
-      if (this->Params.Window == Falloff::Radial)
-      {
-        return FadeOf(fade, hn::Mul(hn::Sqrt(Dot(v, v)), this->InverseReach));
-      }
-      V product = FadeOf(fade, hn::Mul(v[0], this->InverseReach));
-      for (int axis = 1; axis < N; ++axis)
-      {
-        product = hn::Mul(product, FadeOf(fade, hn::Mul(v[axis], this->InverseReach)));
-      }
-      return product;
-    }
-  }
-
-  WALK_INLINE void AddSurflet(int ox)
-  {
-    const V offset = Const(static_cast<float>(ox));
-    V v[N];
-    for (int i = 0; i < N; ++i)
-    {
-      v[i] = Variant ? hn::MulAdd(offset, this->Step[i], this->RowV[i])
-        : i == 0     ? hn::Add(offset, this->RowV[0])
-                     : this->RowV[i];
-    }
-    VU hash = hn::Zero(DU());
-    if constexpr (Variant)
-    {
-      hash = this->Corner.GetHash(ox);
-      if (this->Setup.JitterRadius > 0.0f)
-      {
-        for (int i = 0; i < N; ++i)
-        {
-          v[i] = hn::Add(
-            v[i], hn::Sub(HashToUnit(HashStream(hash, 3 + i)), Const(this->Setup.JitterDown)));
-        }
-      }
-    }
-
-    // Along the flow and across it: s, and t as a vector (in 2D as a number along the normal n).
-    V s = Dot(v, this->F.U);
-    V t[N];
-    if constexpr (N == 2)
-    {
-      t[0] = Variant ? hn::MulSub(this->F.U[0], v[1], hn::Mul(this->F.U[1], v[0]))
-                     : hn::Add(hn::NegMulAdd(this->F.UHigh[1], offset, this->CrossRow),
-                         hn::NegMulAdd(this->F.ULow[1], offset, this->CrossRest));
-    }
-    else
-    {
-      for (int i = 0; i < N; ++i)
-      {
-        t[i] = hn::NegMulAdd(s, this->F.U[i], v[i]);
-      }
-      // u has not quite length 1 and s is rounded: what t still has of u is large beside it.
-      const V rest = Dot(t, this->F.U);
-      for (int i = 0; i < N; ++i)
-      {
-        t[i] = hn::NegMulAdd(rest, this->F.U[i], t[i]);
-      }
-      s = hn::Add(s, rest);
-    }
-    if (this->Setup.Curved)
-    {
-      const V sag = hn::Mul(hn::Mul(Const(0.5f), s), s);
-      if constexpr (N == 2)
-      {
-        t[0] = hn::NegMulAdd(sag, this->F.BendAcross, t[0]);
-      }
-      else
-      {
-        for (int i = 0; i < N; ++i)
-        {
-          t[i] = hn::NegMulAdd(sag, this->F.Bend[i], t[i]);
-        }
-      }
-    }
-    V amplitude = Const(1.0f);
-    if constexpr (Variant)
-    {
-      if (this->Params.Motion)
-      {
-        const V clock = hn::Add(HashToUnit(HashStream(hash, 1)),
-          Const(static_cast<float>(this->Params.Phase - std::floor(this->Params.Phase))));
-        const V tau = hn::Sub(clock, hn::Floor(clock));
-        const V centered = hn::Sub(tau, Const(0.5f));
-        s = hn::MulAdd(
-          hn::Mul(centered, hn::Mul(this->F.Sense, Const(static_cast<float>(this->Params.Speed)))),
-          hn::Div(Const(1.0f), this->RootAlong), s);
-        const V wave = CosPi(centered); // sin(π τ)
-        amplitude = hn::Mul(hn::Mul(wave, wave), Const(1.6329931619f));
-      }
-    }
-
-    const V ks = hn::Mul(this->F.Along, s);
-    const V t2 = N == 2 ? hn::Mul(t[0], t[0]) : Dot(t, t);
-    V across2 = hn::Mul(this->F.Across, t2);
-    V r = hn::Zero(DF());
-    if (N == 3 && this->Setup.Biaxial)
-    {
-      r = Dot(t, this->F.M);
-      across2 = hn::MulAdd(hn::Mul(hn::Sub(this->F.Second, this->F.Across), r), r, across2);
-    }
-    const V q = hn::MulAdd(ks, s, across2);
-    V weight = this->GetWindow(v);
-
-    if constexpr (Variant)
-    {
-      if (this->Params.Surflet == Basis::Streaks)
-      {
-        this->AddStreak(hash, amplitude, weight, s, across2);
-        return;
-      }
-      if (this->Params.AnisotropicWeight)
-      {
-        weight = hn::Mul(weight, FadeOf(this->Params.Interpolant, q));
-      }
-      if (this->Params.Surflet == Basis::Value)
-      {
-        const V value = hn::Mul(HashToSigned(hash), Const(2.0f));
-        const V weight2 = hn::Mul(weight, weight);
-        this->Total.Noise = hn::MulAdd(hn::Mul(amplitude, weight), value, this->Total.Noise);
-        this->Total.Variance = hn::MulAdd(weight2, Const(1.0f / 3.0f), this->Total.Variance);
-        this->Total.Weight = hn::Add(this->Total.Weight, weight);
-        return;
-      }
-    }
-    else
-    {
-      weight = hn::Mul(weight, QuinticFade(q));
-    }
-
-    // G v' in the axes of the metric, then the gradient.
-    V Gv[N];
-    if constexpr (N == 2)
-    {
-      const V bt = hn::Mul(this->F.Across, t[0]);
-      Gv[0] = hn::MulSub(ks, this->F.U[0], hn::Mul(bt, this->F.U[1]));
-      Gv[1] = hn::MulAdd(ks, this->F.U[1], hn::Mul(bt, this->F.U[0]));
-    }
-    else
-    {
-      for (int i = 0; i < N; ++i)
-      {
-        Gv[i] = hn::MulAdd(ks, this->F.U[i], hn::Mul(this->F.Across, t[i]));
-      }
-      if (this->Setup.Biaxial)
-      {
-        const V er = hn::Mul(hn::Sub(this->F.Second, this->F.Across), r);
-        for (int i = 0; i < N; ++i)
-        {
-          Gv[i] = hn::MulAdd(er, this->F.M[i], Gv[i]);
-        }
-      }
-    }
-    V g[N];
-    if constexpr (Variant)
-    {
-      this->Corner.GetGradient(hash, g);
-      this->Total.Noise = hn::MulAdd(hn::Mul(amplitude, weight), Dot(g, Gv), this->Total.Noise);
-    }
-    else
-    {
-      this->Corner.GetGradient(ox, g);
-      this->Total.Noise = hn::MulAdd(weight, Dot(g, Gv), this->Total.Noise);
-    }
-    if (this->Params.Normalize == Normalization::UnitVariance)
-    {
-      const auto variance = static_cast<float>(GradientVariance(this->Params.Gradients, N));
-      this->Total.Variance = hn::MulAdd(
-        hn::Mul(hn::Mul(weight, weight), Const(variance)), Dot(Gv, Gv), this->Total.Variance);
-    }
-    else
-    {
-      this->Total.Weight = hn::Add(this->Total.Weight, weight);
-    }
-  }
-
-  WALK_INLINE void AddStreak(VU hash, V amplitude, V window, V s, V across2)
-  {
-    const V sigma = hn::Neg(hn::Mul(s, this->RootAlong));
-    const V across = hn::Sqrt(hn::Max(across2, Const(0.0f)));
-    const V profile = hn::Mul(hn::Mul(window, this->F.Sense),
-      hn::Mul(StreakProfile(sigma), FadeOf(this->Params.Interpolant, across)));
-    const auto density = static_cast<float>(this->Params.Density);
-    const auto on = hn::Lt(HashToUnit(HashStream(hash, 2)), Const(density));
-    this->Total.Noise =
-      hn::Add(this->Total.Noise, hn::IfThenElseZero(on, hn::Mul(amplitude, profile)));
-    this->Total.Variance =
-      hn::MulAdd(hn::Mul(Const(density), profile), profile, this->Total.Variance);
-    this->Total.Weight = hn::Add(this->Total.Weight, profile);
-  }
-
-  const NoiseSetup& Setup;
-  const NoiseParameters& Params;
-  const Frame<N>& F;
-  Corners& Corner;
-  bool Straight;
-  V InverseReach;
-  V RootAlong;
-  V HalfLength;
-  V HalfWidth;
-  V Fraction[N];
-  V Step[N];
-  V BoxLow;
-  V BoxHigh;
-  V GStep[N];
-  V QuadraticA;
-  V InverseA;
-  V RowV[N];
-  V RowWindow;
-  V CrossFraction;
-  V CrossRow;
-  V CrossRest;
-  Sums Total;
-};
-
-template <int N, bool Variant, class Corners>
-WALK_INLINE V SumSurflets(const NoiseSetup& setup, const Frame<N>& frame, const V (&f)[N],
-  Corners& corners, std::uint64_t& visited)
-{
-  if constexpr (!Variant)
-  {
-    if (setup.SingleCell)
-    {
-      visited += 1 << N;
-      return SumOverCell<N>(frame, f, corners);
-    }
-  }
-  return Walk<N, Variant, Corners>(setup, frame, f, corners).Evaluate(visited);
-}
-
-/// Adds one octave to the samples of a block whose cells and fractions are set.
-template <int N, bool Variant, class Corners, class SetCells>
+/// Adds one octave to the samples of a block; `evaluate` gives the noise of the register from sample i.
+template <int N, class Evaluate>
 WALK_INLINE void AddOctave(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
-  std::size_t count, Corners& corners, std::uint64_t& visited, SetCells&& setCells)
+  std::size_t count, Evaluate&& evaluate)
 {
   for (std::size_t i = 0; i < count; i += Lanes)
   {
-    V f[N];
-    setCells(i, f);
     const Frame<N> frame(setup, block, i, octave.CellSize);
-    std::uint64_t corner = 0;
-    V noise = SumSurflets<N, Variant>(setup, frame, f, corners, corner);
-    visited += corner * std::min(Lanes, count - i);
+    V noise = evaluate(i, frame);
     if (setup.Parameters.Turbulence)
     {
       noise = hn::Abs(noise);
@@ -1209,6 +595,48 @@ WALK_INLINE void AddOctave(const NoiseSetup& setup, const OctaveSetup& octave, M
     }
     hn::StoreU(noise, DF(), block.Noise + i);
   }
+}
+
+/// The same for the places that `getPlaces` gives.
+template <int N, bool Aligned, class GetPlaces>
+WALK_INLINE void AddWalks(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
+  std::size_t count, std::uint64_t& visited, GetPlaces&& getPlaces)
+{
+  const auto walk = [&](auto variant) HWY_ATTR
+  {
+    AddOctave<N>(setup, octave, block, count,
+      [&](std::size_t i, const Frame<N>& frame) HWY_ATTR
+      {
+        Places<N> places;
+        getPlaces(i, places);
+        return Walk<N, decltype(variant)::value, Aligned>(setup, octave, frame, places)
+          .Evaluate(std::min(Lanes, count - i), visited);
+      });
+  };
+  if (setup.Variant)
+  {
+    walk(std::true_type());
+  }
+  else
+  {
+    walk(std::false_type());
+  }
+}
+
+/// The same for Quality 0 without extensions.
+template <int N, class Corners, class GetPlaces>
+WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
+  std::size_t count, Corners& corners, std::uint64_t& visited, GetPlaces&& getPlaces)
+{
+  AddOctave<N>(setup, octave, block, count,
+    [&](std::size_t i, const Frame<N>& frame) HWY_ATTR
+    {
+      Places<N> places;
+      getPlaces(i, places);
+      corners.SetCells(places.Cell);
+      return SumOverCell<N>(frame, places.Fraction, corners);
+    });
+  visited += count << N;
 }
 
 // ---- metrics ------------------------------------------------------------------------------------
@@ -1420,24 +848,15 @@ HWY_NOINLINE void CopyCurvature(
   }
 }
 
-template <int N>
-void ClearTail(MetricBlock& block, std::size_t count)
+/// Repeats the last sample behind the end, so that the lanes there are like their neighbours.
+void PadTail(MetricBlock& block, std::size_t count)
 {
-  // Lanes behind the last sample are computed too: give them something harmless.
-  if (count % Lanes == 0)
+  const auto pad = [count](auto* array) { std::fill_n(array + count, Lanes, array[count - 1]); };
+  for (float* array : { block.U[0], block.U[1], block.U[2], block.M[0], block.M[1], block.M[2],
+         block.ULow[0], block.ULow[1], block.Bend[0], block.Bend[1], block.Bend[2], block.Along,
+         block.Across, block.Second, block.Sense })
   {
-    return;
-  }
-  for (std::size_t i = count; i < count + Lanes; ++i)
-  {
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      block.U[axis][i] = block.M[axis][i] = block.Bend[axis][i] = 0.0f;
-      block.ULow[axis % 2][i] = 0.0f;
-      block.Fraction[axis][i] = count > 0 ? block.Fraction[axis][count - 1] : 0.0f;
-      block.Cell[axis][i] = count > 0 ? block.Cell[axis][count - 1] : 0;
-    }
-    block.Length[i] = 0.0f;
+    pad(array);
   }
 }
 
@@ -1469,12 +888,6 @@ void MetricsOfTensors(
     }
     const double norm = tensor.norm();
     block.Length[i] = std::isfinite(norm) ? static_cast<float>(norm) : 0.0f;
-  }
-  for (std::size_t i = count; i < count + Lanes; ++i)
-  {
-    block.Along[i] = block.Across[i] = block.Second[i] = 1.0f;
-    block.Sense[i] = 0.0f;
-    block.U[0][i] = block.M[1][i] = 1.0f;
   }
 }
 
@@ -1508,6 +921,7 @@ void Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
   if (field.Tensors)
   {
     MetricsOfTensors<N>(setup, field.Tensors->Read(first, count, block.Tuples), count, block);
+    PadTail(block, count);
     return;
   }
   float* const low[2] = { block.ULow[0], block.ULow[1] };
@@ -1520,6 +934,7 @@ void Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
     ProjectOnSurface(vectors, normals, count, block);
   }
   MetricsOfDirections<N>(setup, block, count);
+  PadTail(block, count);
 }
 
 /// Scales, masks, counts and hands out the noise of a block.
@@ -1619,6 +1034,36 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
       }
     }
   }
+  for (int axis = 0; axis < N; ++axis)
+  {
+    std::fill_n(block.Cell[axis] + count, Lanes, block.Cell[axis][count - 1]);
+    std::fill_n(block.Fraction[axis] + count, Lanes, block.Fraction[axis][count - 1]);
+  }
+}
+
+/// Adds one octave to samples at these positions.
+template <int N>
+void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double* positions,
+  std::size_t count, MetricBlock& block, std::uint64_t& visited)
+{
+  LocatePoints<N>(setup, octave, positions, count, block);
+  const auto anywhere = [&](std::size_t i, Places<N>& places) HWY_ATTR
+  {
+    for (int axis = 0; axis < N; ++axis)
+    {
+      places.Cell[axis] = hn::LoadU(DU(), block.Cell[axis] + i);
+      places.Fraction[axis] = Load(block.Fraction[axis] + i);
+    }
+  };
+  if (setup.SingleCell)
+  {
+    LaneCorners<N> corners(octave);
+    AddCells<N>(setup, octave, block, count, corners, visited, anywhere);
+  }
+  else
+  {
+    AddWalks<N, false>(setup, octave, block, count, visited, anywhere);
+  }
 }
 
 // ---- images -------------------------------------------------------------------------------------
@@ -1633,20 +1078,6 @@ inline double CellPlace(const ImageGrid& grid, int axis, std::int64_t index, dou
     (grid.Origin[axis] + static_cast<double>(grid.FirstIndex[axis] + index) * grid.Spacing[axis]) *
     cellsPerUnit;
   return std::abs(place) < FarthestCell ? place : 0.0;
-}
-
-/// Cells around a sample's own that the fast loops can ask for.
-template <int N>
-int RowReach(const NoiseSetup& setup)
-{
-  const double length = 1.0 / std::sqrt(VectorEigenvalues(setup.Parameters, N).Along);
-  // Bent by at most half the length, since the length is at most the radius of curvature.
-  double reach = std::max(1.0, setup.Curved ? 1.5 * length + 1.0 : length);
-  if (setup.Parameters.LatticeWindow)
-  {
-    reach = std::min(reach, static_cast<double>(setup.Parameters.Quality + 1));
-  }
-  return static_cast<int>(std::ceil(reach)) + 1;
 }
 
 /// One octave of an image: places along x, and the gradient rows if they serve.
@@ -1672,9 +1103,8 @@ struct ImageOctave
     }
     // Lanes pick gradients out of one register, so neighbours must be within one cell.
     const double step = grid.Spacing[0] * octave.CellsPerUnit;
-    const int reach = RowReach<N>(setup);
-    const bool serve = !setup.Variant && step >= 0.0 && step <= 1.0 && reach <= 32;
-    const std::int64_t firstColumn = serve ? cells.front() - reach : 0;
+    const bool serve = setup.SingleCell && step >= 0.0 && step <= 1.0;
+    const std::int64_t firstColumn = cells.front();
     for (std::int64_t i = 0; i < samples; ++i)
     {
       this->Column[i] = serve ? static_cast<std::uint32_t>(cells[i] - firstColumn)
@@ -1687,8 +1117,8 @@ struct ImageOctave
     }
     if (serve)
     {
-      const auto columns = static_cast<std::size_t>(cells.back() - firstColumn + reach + 2);
-      this->Rows = std::make_unique<GradientRows<N>>(octave, firstColumn, columns, reach);
+      const auto columns = static_cast<std::size_t>(cells.back() - firstColumn + 2);
+      this->Rows = std::make_unique<GradientRows<N>>(octave, firstColumn, columns);
     }
   }
 };
@@ -1797,7 +1227,6 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
     {
       const auto count = static_cast<std::size_t>(std::min<std::int64_t>(BlockSize, nx - i0));
       const std::size_t first = row * nx + i0;
-      ClearTail<N>(*block, count);
       if (setup.Curved)
       {
         ImageCurvature<N>(setup, grid, field, scaleX, i0, count, j, k, *block);
@@ -1822,12 +1251,14 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
           fraction[axis] = Const(static_cast<float>(places[axis] - floored));
         }
         cell[2] = N == 3 ? cell[N - 1] : 0;
-        const auto fractions = [&](std::size_t i, V(&f)[N]) HWY_ATTR
+        const auto alongRow = [&](std::size_t i, Places<N>& places) HWY_ATTR
         {
-          f[0] = Load(image.Fraction.data() + i0 + i);
+          places.Cell[0] = hn::LoadU(DU(), image.Column.data() + i0 + i);
+          places.Fraction[0] = Load(image.Fraction.data() + i0 + i);
           for (int axis = 1; axis < N; ++axis)
           {
-            f[axis] = fraction[axis];
+            places.Cell[axis] = hn::Set(DU(), WrapToPeriod(cell[axis], octave.Period[axis]));
+            places.Fraction[axis] = fraction[axis];
           }
         };
         if (setup.Parameters.Grid == Lattice::Simplicial)
@@ -1842,51 +1273,22 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
               block->Positions[3 * i + axis] = CellPlace(grid, axis, index, 1.0);
             }
           }
-          LocatePoints<N>(setup, octave, block->Positions, count, *block);
-          LaneCorners<N> corners(octave, setup.Parameters.Gradients);
-          AddOctave<N, true>(setup, octave, *block, count, corners, counts.VisitedCorners,
-            [&](std::size_t i, V(&f)[N]) HWY_ATTR
-            {
-              corners.SetCells(block->Cell[0] + i, block->Cell[1] + i, block->Cell[2] + i);
-              for (int axis = 0; axis < N; ++axis)
-              {
-                f[axis] = Load(block->Fraction[axis] + i);
-              }
-            });
+          AddPoints<N>(setup, octave, block->Positions, count, *block, counts.VisitedCorners);
         }
         else if (image.Rows)
         {
           image.Rows->MoveTo(cell[1], cell[2]);
           RowCorners<N> corners(*image.Rows);
-          AddOctave<N, false>(setup, octave, *block, count, corners, counts.VisitedCorners,
-            [&](std::size_t i, V(&f)[N]) HWY_ATTR
-            {
-              corners.SetCells(image.Column.data() + i0 + i);
-              fractions(i, f);
-            });
+          AddCells<N>(setup, octave, *block, count, corners, counts.VisitedCorners, alongRow);
+        }
+        else if (setup.SingleCell)
+        {
+          LaneCorners<N> corners(octave);
+          AddCells<N>(setup, octave, *block, count, corners, counts.VisitedCorners, alongRow);
         }
         else
         {
-          HWY_ALIGN std::uint32_t y[Lanes];
-          HWY_ALIGN std::uint32_t z[Lanes];
-          std::fill(y, y + Lanes, WrapToPeriod(cell[1], octave.Period[1]));
-          std::fill(z, z + Lanes, WrapToPeriod(cell[2], octave.Period[2]));
-          LaneCorners<N> corners(octave, setup.Parameters.Gradients);
-          const auto setCells = [&](std::size_t i, V(&f)[N]) HWY_ATTR
-          {
-            corners.SetCells(image.Column.data() + i0 + i, y, z);
-            fractions(i, f);
-          };
-          if (setup.Variant)
-          {
-            AddOctave<N, true>(
-              setup, octave, *block, count, corners, counts.VisitedCorners, setCells);
-          }
-          else
-          {
-            AddOctave<N, false>(
-              setup, octave, *block, count, corners, counts.VisitedCorners, setCells);
-          }
+          AddWalks<N, true>(setup, octave, *block, count, counts.VisitedCorners, alongRow);
         }
       }
       Finish(setup, *block, count, noise + first, counts);
@@ -1906,7 +1308,6 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
   for (std::size_t first = begin; first < end; first += BlockSize)
   {
     const std::size_t count = std::min(BlockSize, end - first);
-    ClearTail<N>(*block, count);
     if (setup.Curved)
     {
       CopyCurvature<N>(setup, field.Curvature->Read(first, count, block->Tuples), count, *block);
@@ -1919,24 +1320,7 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     const double* place = positions.Read(first, count, block->Positions);
     for (const OctaveSetup& octave : setup.Octaves)
     {
-      LocatePoints<N>(setup, octave, place, count, *block);
-      LaneCorners<N> corners(octave, setup.Parameters.Gradients);
-      const auto setCells = [&](std::size_t i, V(&f)[N]) HWY_ATTR
-      {
-        corners.SetCells(block->Cell[0] + i, block->Cell[1] + i, block->Cell[2] + i);
-        for (int axis = 0; axis < N; ++axis)
-        {
-          f[axis] = Load(block->Fraction[axis] + i);
-        }
-      };
-      if (setup.Variant)
-      {
-        AddOctave<N, true>(setup, octave, *block, count, corners, counts.VisitedCorners, setCells);
-      }
-      else
-      {
-        AddOctave<N, false>(setup, octave, *block, count, corners, counts.VisitedCorners, setCells);
-      }
+      AddPoints<N>(setup, octave, place, count, *block, counts.VisitedCorners);
     }
     Finish(setup, *block, count, noise + first, counts);
   }

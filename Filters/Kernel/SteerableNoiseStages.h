@@ -75,7 +75,8 @@ struct NoiseSetup
   /// How far jitter moves a corner down and up an axis.
   float JitterDown;
   float JitterUp;
-  /// Radius of a ball that holds every jittered corner; 0: none moves.
+  /// Middle of its way on every axis, and radius of the ball around that holds all of it; 0: none moves.
+  float JitterMiddle;
   float JitterRadius;
   double LatticeSteps[3][3];
   double LatticeIndices[3][3];

@@ -437,6 +437,7 @@ struct Frame
   V BendAcross;
   V Sense;
 
+  WALK_INLINE Frame() {}
   WALK_INLINE Frame(
     const NoiseSetup& setup, const MetricBlock& block, std::size_t i, float cellSize)
     : Along(Load(block.Along + i))
@@ -576,50 +577,55 @@ WALK_INLINE V SumOverCell(const Frame<N>& frame, const V (&f)[N], Corners& corne
 
 #include "SteerableNoiseWalk-inl.h"
 
-/// Adds one octave to the samples of a block; `evaluate` gives the noise of the register from sample i.
-template <int N, class Evaluate>
-WALK_INLINE void AddOctave(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
-  std::size_t count, Evaluate&& evaluate)
+/// Puts the noise of an octave into the block, or adds it to that of the octaves before.
+WALK_INLINE void AddOctave(
+  const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block, std::size_t i, V noise)
 {
-  for (std::size_t i = 0; i < count; i += Lanes)
+  if (setup.Parameters.Turbulence)
   {
-    const Frame<N> frame(setup, block, i, octave.CellSize);
-    V noise = evaluate(i, frame);
-    if (setup.Parameters.Turbulence)
+    noise = hn::Abs(noise);
+  }
+  if (setup.Octaves.size() > 1)
+  {
+    noise = hn::MulAdd(noise, Const(octave.Amplitude * setup.OctaveScale), Load(block.Noise + i));
+  }
+  hn::StoreU(noise, DF(), block.Noise + i);
+}
+
+/// One octave of a block; `getPlaces(i, places)` tells where the register from sample i is.
+template <int N, bool Variant, bool Aligned, class GetPlaces>
+WALK_INLINE void AddWalk(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
+  std::size_t count, std::uint64_t& visited, GetPlaces&& getPlaces)
+{
+  Walk<N, Variant, Aligned> walk(setup, octave);
+  for (std::size_t begin = 0; begin < count; begin += TileSamples)
+  {
+    const std::size_t end = std::min(count, begin + TileSamples);
+    for (std::size_t i = begin; i < end; i += Lanes)
     {
-      noise = hn::Abs(noise);
+      Places<N> places;
+      getPlaces(i, places);
+      walk.SetRegister((i - begin) / Lanes, block, i, places);
     }
-    if (setup.Octaves.size() > 1)
+    visited += walk.Evaluate(end - begin);
+    for (std::size_t i = begin; i < end; i += Lanes)
     {
-      noise = hn::MulAdd(noise, Const(octave.Amplitude * setup.OctaveScale), Load(block.Noise + i));
+      AddOctave(setup, octave, block, i, walk.GetNoise((i - begin) / Lanes));
     }
-    hn::StoreU(noise, DF(), block.Noise + i);
   }
 }
 
-/// The same for the places that `getPlaces` gives.
 template <int N, bool Aligned, class GetPlaces>
 WALK_INLINE void AddWalks(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
   std::size_t count, std::uint64_t& visited, GetPlaces&& getPlaces)
 {
-  const auto walk = [&](auto variant) HWY_ATTR
-  {
-    AddOctave<N>(setup, octave, block, count,
-      [&](std::size_t i, const Frame<N>& frame) HWY_ATTR
-      {
-        Places<N> places;
-        getPlaces(i, places);
-        return Walk<N, decltype(variant)::value, Aligned>(setup, octave, frame, places)
-          .Evaluate(std::min(Lanes, count - i), visited);
-      });
-  };
   if (setup.Variant)
   {
-    walk(std::true_type());
+    AddWalk<N, true, Aligned>(setup, octave, block, count, visited, getPlaces);
   }
   else
   {
-    walk(std::false_type());
+    AddWalk<N, false, Aligned>(setup, octave, block, count, visited, getPlaces);
   }
 }
 
@@ -628,14 +634,14 @@ template <int N, class Corners, class GetPlaces>
 WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
   std::size_t count, Corners& corners, std::uint64_t& visited, GetPlaces&& getPlaces)
 {
-  AddOctave<N>(setup, octave, block, count,
-    [&](std::size_t i, const Frame<N>& frame) HWY_ATTR
-    {
-      Places<N> places;
-      getPlaces(i, places);
-      corners.SetCells(places.Cell);
-      return SumOverCell<N>(frame, places.Fraction, corners);
-    });
+  for (std::size_t i = 0; i < count; i += Lanes)
+  {
+    Places<N> places;
+    getPlaces(i, places);
+    corners.SetCells(places.Cell);
+    const Frame<N> frame(setup, block, i, octave.CellSize);
+    AddOctave(setup, octave, block, i, SumOverCell<N>(frame, places.Fraction, corners));
+  }
   visited += count << N;
 }
 

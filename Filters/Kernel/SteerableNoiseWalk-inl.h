@@ -19,31 +19,29 @@ struct Places
   V Fraction[N];
 };
 
-/// Corners of a list that go through the stages together, and room for a register behind them.
-constexpr std::size_t ListSize = 64;
-constexpr std::size_t ListRoom = ListSize + 2 * Lanes;
+/// Registers of samples that share their lists where they can.
+constexpr std::size_t TileRegisters = 2;
+constexpr std::size_t TileSamples = TileRegisters * Lanes;
 
-/// Corners that may be in reach, as offsets from the cell of the first sample.
+/// Corners of a list, or lattice rows, that go through the stages together: a bit for each.
+constexpr std::size_t ListSize = 64;
+
+/// Corners that may be in reach, and what samples need to know of them.
 template <int N>
 struct CornerList
 {
   std::size_t Count = 0;
-  HWY_ALIGN float Offset[N][ListRoom];
-};
-
-/// What samples need to know of a register of corners.
-template <int N>
-struct CornerBatch
-{
-  HWY_ALIGN float Offset[N][Lanes];
-  HWY_ALIGN float Gradient[N][Lanes];
+  /// From the cell that the group counts from.
+  HWY_ALIGN std::int32_t Index[N][ListSize];
+  HWY_ALIGN float Offset[N][ListSize];
+  HWY_ALIGN float Gradient[N][ListSize];
   /// Offset and window on the axes that all samples of an image row share.
-  HWY_ALIGN float FromRow[N][Lanes];
-  HWY_ALIGN float RowWindow[Lanes];
+  HWY_ALIGN float FromRow[N][ListSize];
+  HWY_ALIGN float RowWindow[ListSize];
   /// Of variants: displacement of the corner, (τ - 1/2) Speed, and what the surflet is multiplied by.
-  HWY_ALIGN float Jitter[N][Lanes];
-  HWY_ALIGN float Travel[Lanes];
-  HWY_ALIGN float Amplitude[Lanes];
+  HWY_ALIGN float Jitter[N][ListSize];
+  HWY_ALIGN float Travel[ListSize];
+  HWY_ALIGN float Amplitude[ListSize];
 };
 
 /**
@@ -54,6 +52,9 @@ struct CornerBatch
 template <int N>
 struct Group
 {
+  /// Registers [Begin, End) of the tile.
+  std::size_t Begin;
+  std::size_t End;
   float Place[N];
   float PlaceStep[N]; // as a distance, not in indices of the lattice
   float U[N];
@@ -67,18 +68,23 @@ struct Group
   float InverseLength;
   /// A streak has the same width everywhere.
   bool Tapers;
+  float LambdaStep; // between neighbours
+  /// Change of s with λ that comes from the places.
   float AlongStep;
-  /// Largest distance between places; of s between samples, without and with the surflet's travel.
+  /// Largest distance between places, and that along a lattice row.
   float Spread;
-  float AlongSpread;
+  float RowSpread;
+  /// What s can be off its linear change, surflet's travel included, and off that of the middle, where
+  /// a row takes the change along it into account.
+  float AlongRest;
   float AlongReach;
-  /// t of a sample is at most Rest[0] + Rest[1] |s| + Rest[2] s² from t - λ (its linear change), and at
-  /// most Across[...] from t.
+  /// The same for t: Rest[0] + Rest[1] |s| + Rest[2] s², and Across[...] likewise.
   float Rest[3];
   float Across[3];
 
-  /// Bounds, from what places, directions and bends are off the linear change.
-  WALK_INLINE void SetBounds(float place, float direction, float bend, float travel)
+  /// Bounds, from what places, directions and bends are off their linear change.
+  WALK_INLINE void SetBounds(
+    float place, float direction, float bend, float travel, bool oblique)
   {
     float place2 = 0.0f;
     float direction2 = 0.0f;
@@ -91,45 +97,49 @@ struct Group
       bend2 += this->BendStep[axis] * this->BendStep[axis];
       this->AlongStep += this->PlaceStep[axis] * this->U[axis];
     }
-    const float along = std::abs(this->AlongStep) + place;
-    const float across = std::sqrt(std::max(0.0f, place2 - this->AlongStep * this->AlongStep));
+    this->RowSpread = oblique ? 0.0f : std::abs(this->PlaceStep[0]);
+    const float places = std::sqrt(place2);
+    const float fromRow =
+      std::sqrt(std::max(0.0f, place2 - this->RowSpread * this->RowSpread));
     const float turn = std::sqrt(direction2);
     const float change = std::sqrt(bend2);
     const float kappa = this->BendLength + change + bend;
     const float length = this->HalfLength;
-    this->Spread = std::sqrt(place2) + place;
-    const float second = (turn + direction) *
-      (this->HalfWidth + 0.5f * length * (turn + direction + length * kappa));
-    this->AlongSpread = along + second;
-    this->AlongReach = this->AlongSpread + travel;
-    this->Rest[0] = place + along * turn + second * turn + 0.5f * kappa * this->AlongSpread * this->AlongSpread;
+    const float far = this->HalfWidth + 0.5f * length * length * kappa;
+    const float along = std::abs(this->AlongStep) + turn * far;
+    const float second = places * turn + direction * (length + far + places) + place;
+    this->Spread = places + place;
+    this->AlongRest = second + travel;
+    this->AlongReach = fromRow + turn * far + second + travel;
+    this->Rest[0] =
+      place + (along + second) * (turn + 0.5f * kappa * (along + second));
     this->Rest[1] = direction + kappa * second + along * change;
     this->Rest[2] = 0.5f * bend;
-    this->Across[0] = this->Rest[0] + across;
-    this->Across[1] = this->Rest[1] + turn + kappa * along;
+    this->Across[0] = this->Rest[0] + fromRow;
+    this->Across[1] = this->Rest[1] + turn + kappa * (fromRow + turn * far);
     this->Across[2] = this->Rest[2] + 0.5f * change;
+    this->LambdaStep =
+      2.0f / std::max(1.0f, static_cast<float>(Lanes * (this->End - this->Begin)) - 1.0f);
   }
   float GetLength() const { return this->HalfLength + this->AlongReach; }
-  float GetLargestWidth() const
+  float GetLargestWidth() const { return this->HalfWidth + this->GetMore(this->GetLength()); }
+  float GetMore(float s) const
   {
-    const float s = this->HalfLength + this->AlongReach + this->AlongSpread;
-    return this->HalfWidth + this->Across[0] + s * (this->Across[1] + s * this->Across[2]);
+    return this->Across[0] + s * (this->Across[1] + s * this->Across[2]);
   }
-  /// Largest |t| for |s| between `least` and `most`, with one of the two bounds above.
-  WALK_INLINE V GetWidth(V least, V most, const float (&bound)[3]) const
+  /// Half-width of the surflet at |s| = `distance` and farther; negative beyond its end.
+  WALK_INLINE V GetTaper(V distance) const
   {
-    V width = Const(this->HalfWidth);
-    if (this->Tapers)
-    {
-      const V s = hn::Mul(
-        hn::Max(hn::Sub(least, Const(this->AlongReach)), hn::Zero(DF())), Const(this->InverseLength));
-      width = hn::Mul(
-        width, hn::Sqrt(hn::Max(hn::NegMulAdd(s, s, Const(1.0f)), hn::Zero(DF()))));
-    }
-    const V s = hn::Add(most, Const(this->AlongSpread));
-    const V more =
-      hn::MulAdd(hn::MulAdd(Const(bound[2]), s, Const(bound[1])), s, Const(bound[0]));
-    return hn::Add(width, more);
+    const V s = hn::Mul(hn::Max(distance, hn::Zero(DF())), Const(this->InverseLength));
+    const V left = hn::NegMulAdd(s, s, Const(1.0f));
+    const V taper = this->Tapers ? hn::Sqrt(hn::Max(left, hn::Zero(DF()))) : Const(1.0f);
+    return hn::IfThenElse(
+      hn::Lt(left, hn::Zero(DF())), Const(-1e9f), hn::Mul(Const(this->HalfWidth), taper));
+  }
+  /// The same of a register of distances, with Rest or Across.
+  static WALK_INLINE V GetMore(V s, const float (&bound)[3])
+  {
+    return hn::MulAdd(hn::MulAdd(Const(bound[2]), s, Const(bound[1])), s, Const(bound[0]));
   }
 };
 
@@ -138,66 +148,40 @@ template <int N, bool Variant, bool Aligned>
 class Walk
 {
 public:
-  WALK_INLINE Walk(const NoiseSetup& setup, const OctaveSetup& octave, const Frame<N>& frame,
-    const Places<N>& places)
+  WALK_INLINE Walk(const NoiseSetup& setup, const OctaveSetup& octave)
     : Setup(setup)
     , Params(setup.Parameters)
     , Octave(octave)
-    , F(frame)
-    , P(places)
     , InverseReach(Const(1.0f / (Params.Quality + 1)))
-    , RootAlong(hn::Sqrt(frame.Along))
   {
-    if constexpr (N == 2)
-    {
-      const V product = hn::Mul(frame.U[1], places.Fraction[0]);
-      this->CrossFraction = hn::Sub(hn::MulSub(frame.U[0], places.Fraction[1], product),
-        hn::MulSub(frame.U[1], places.Fraction[0], product));
-    }
   }
 
-  /// Noise of the first `count` samples of the register.
-  WALK_INLINE V Evaluate(std::size_t count, std::uint64_t& visited)
+  /// Takes register `r` of the tile from sample `i` of the block.
+  WALK_INLINE void SetRegister(
+    std::size_t r, const MetricBlock& block, std::size_t i, const Places<N>& places)
   {
-    Group<N> group;
-    for (int axis = 0; axis < N; ++axis)
+    this->F[r] = Frame<N>(this->Setup, block, i, this->Octave.CellSize);
+    this->P[r] = places;
+    if constexpr (N == 2)
     {
-      this->Cell[axis] = hn::GetLane(this->P.Cell[axis]);
-      this->Shift[axis] = hn::Zero(DF());
-      if (!Aligned || axis == 0)
-      {
-        this->Shift[axis] = hn::ConvertTo(DF(),
-          hn::BitCast(DI(), hn::Sub(this->P.Cell[axis], hn::Set(DU(), this->Cell[axis]))));
-      }
+      const Frame<N>& frame = this->F[r];
+      const V product = hn::Mul(frame.U[1], places.Fraction[0]);
+      this->CrossFraction[r] = hn::Sub(hn::MulSub(frame.U[0], places.Fraction[1], product),
+        hn::MulSub(frame.U[1], places.Fraction[0], product));
     }
-    if (Lanes > 1 && this->SetGroup(group))
-    {
-      this->AddGroup(group);
-      visited += this->Visited * count;
-      return Normalized(this->Setup, this->Total);
-    }
-    Sums all;
-    for (std::size_t lane = 0; lane < count; ++lane)
-    {
-      for (int axis = 0; axis < N; ++axis)
-      {
-        HWY_ALIGN std::uint32_t cells[Lanes];
-        hn::Store(this->P.Cell[axis], DU(), cells);
-        this->Cell[axis] = cells[lane];
-        this->Shift[axis] = hn::Zero(DF());
-      }
-      this->SetOne(group, lane);
-      this->Total = Sums();
-      this->AddGroup(group);
-      const auto own = hn::RebindMask(DF(),
-        hn::Eq(hn::Iota(DI(), 0), hn::Set(DI(), static_cast<std::int32_t>(lane))));
-      all.Noise = hn::IfThenElse(own, this->Total.Noise, all.Noise);
-      all.Weight = hn::IfThenElse(own, this->Total.Weight, all.Weight);
-      all.Variance = hn::IfThenElse(own, this->Total.Variance, all.Variance);
-    }
-    visited += this->Visited;
-    return Normalized(this->Setup, all);
+    this->Total[r] = Sums();
   }
+
+  /// Sums up the first `count` samples of the tile; returns how many corners they visited.
+  WALK_INLINE std::uint64_t Evaluate(std::size_t count)
+  {
+    this->Count = count;
+    this->Visited = 0;
+    this->AddSpan(0, (count + Lanes - 1) / Lanes);
+    return this->Visited;
+  }
+
+  WALK_INLINE V GetNoise(std::size_t r) const { return Normalized(this->Setup, this->Total[r]); }
 
 private:
   static WALK_INLINE float LaneOf(V v, std::size_t lane)
@@ -209,9 +193,60 @@ private:
 
   // ---- the group --------------------------------------------------------------------------------
 
-  WALK_INLINE V GetLeastAcross() const
+  /// The samples of registers [begin, end): together if they are alike, else half by half.
+  HWY_NOINLINE void AddSpan(std::size_t begin, std::size_t end)
   {
-    return this->Setup.Biaxial ? hn::Min(this->F.Across, this->F.Second) : this->F.Across;
+    Group<N> group;
+    group.Begin = begin;
+    group.End = end;
+    if (Lanes > 1 && this->SetGroup(group))
+    {
+      this->AddGroup(group);
+    }
+    else if (end - begin > 1)
+    {
+      const std::size_t middle = (begin + end) / 2;
+      this->AddSpan(begin, middle);
+      this->AddSpan(middle, end);
+    }
+    else
+    {
+      this->AddOneByOne(begin);
+    }
+  }
+
+  HWY_NOINLINE void AddOneByOne(std::size_t r)
+  {
+    Sums all;
+    Group<N> group;
+    group.Begin = r;
+    group.End = r + 1;
+    const std::uint64_t before = this->Visited;
+    for (std::size_t lane = 0; lane < Lanes && r * Lanes + lane < this->Count; ++lane)
+    {
+      this->SetOne(group, lane);
+      this->Total[r] = Sums();
+      this->AddGroup(group);
+      const auto own = hn::RebindMask(DF(),
+        hn::Eq(hn::Iota(DI(), 0), hn::Set(DI(), static_cast<std::int32_t>(lane))));
+      all.Noise = hn::IfThenElse(own, this->Total[r].Noise, all.Noise);
+      all.Weight = hn::IfThenElse(own, this->Total[r].Weight, all.Weight);
+      all.Variance = hn::IfThenElse(own, this->Total[r].Variance, all.Variance);
+    }
+    this->Visited = before + (this->Visited - before) / this->GetCount(r);
+    this->Total[r] = all;
+  }
+
+  /// Samples of a register.
+  WALK_INLINE std::size_t GetCount(std::size_t r) const
+  {
+    return std::min(Lanes, this->Count - r * Lanes);
+  }
+
+  WALK_INLINE V GetLeastAcross(std::size_t r) const
+  {
+    const Frame<N>& frame = this->F[r];
+    return this->Setup.Biaxial ? hn::Min(frame.Across, frame.Second) : frame.Across;
   }
 
   /// Half axes of the surflet from the least eigenvalues; returns how far it travels.
@@ -231,102 +266,147 @@ private:
       : 0.0f;
   }
 
-  WALK_INLINE void SetOne(Group<N>& group, std::size_t lane) const
+  WALK_INLINE void SetOne(Group<N>& group, std::size_t lane)
   {
+    const std::size_t r = group.Begin;
+    const Frame<N>& frame = this->F[r];
     float bend2 = 0.0f;
     for (int axis = 0; axis < N; ++axis)
     {
-      group.Place[axis] = LaneOf(this->P.Fraction[axis], lane);
-      group.U[axis] = LaneOf(this->F.U[axis], lane);
-      group.Bend[axis] = this->Setup.Curved ? LaneOf(this->F.Bend[axis], lane) : 0.0f;
+      HWY_ALIGN std::uint32_t cells[Lanes];
+      hn::Store(this->P[r].Cell[axis], DU(), cells);
+      this->Cell[axis] = cells[lane];
+      this->Shift[r][axis] = hn::Zero(DF());
+      group.Place[axis] = LaneOf(this->P[r].Fraction[axis], lane);
+      group.U[axis] = LaneOf(frame.U[axis], lane);
+      group.Bend[axis] = this->Setup.Curved ? LaneOf(frame.Bend[axis], lane) : 0.0f;
       group.PlaceStep[axis] = group.UStep[axis] = group.BendStep[axis] = 0.0f;
       bend2 += group.Bend[axis] * group.Bend[axis];
     }
     group.BendLength = std::sqrt(bend2);
     const float travel =
-      this->SetAxes(group, LaneOf(this->F.Along, lane), LaneOf(this->GetLeastAcross(), lane));
-    group.SetBounds(0.0f, 0.0f, 0.0f, travel);
+      this->SetAxes(group, LaneOf(frame.Along, lane), LaneOf(this->GetLeastAcross(r), lane));
+    group.SetBounds(0.0f, 0.0f, 0.0f, travel, this->IsOblique());
   }
 
-  /// Middle and half the difference of the first and the last lane; returns what is left of v.
-  static WALK_INLINE V SplitLinear(V v, V lambda, float& middle, float& step)
+  /// Splits what `get` gives for a register into its linear change and the squares of the rest.
+  template <class Get>
+  static WALK_INLINE void SplitLinear(
+    const Group<N>& group, float& middle, float& step, V (&rest2)[TileRegisters], Get&& get)
   {
-    HWY_ALIGN float lanes[Lanes];
-    hn::Store(v, DF(), lanes);
-    middle = 0.5f * (lanes[0] + lanes[Lanes - 1]);
-    step = 0.5f * (lanes[Lanes - 1] - lanes[0]);
-    return hn::NegMulAdd(lambda, Const(step), hn::Sub(v, Const(middle)));
+    const float first = hn::GetLane(get(group.Begin));
+    const float last = LaneOf(get(group.End - 1), Lanes - 1);
+    const float lambda = 2.0f / std::max(1.0f, static_cast<float>(Lanes * (group.End - group.Begin)) - 1.0f);
+    middle = 0.5f * (first + last);
+    step = 0.5f * (last - first);
+    for (std::size_t r = group.Begin; r < group.End; ++r)
+    {
+      const V index = hn::Iota(DF(), static_cast<float>(Lanes * (r - group.Begin)));
+      const V linear = hn::MulAdd(index, Const(step * lambda), Const(first));
+      const V rest = hn::Sub(get(r), linear);
+      rest2[r] = hn::MulAdd(rest, rest, rest2[r]);
+    }
+  }
+
+  /// Root of the largest of the squares.
+  static WALK_INLINE float GetLargest(const Group<N>& group, const V (&squares)[TileRegisters])
+  {
+    V most = squares[group.Begin];
+    for (std::size_t r = group.Begin + 1; r < group.End; ++r)
+    {
+      most = hn::Max(most, squares[r]);
+    }
+    return std::sqrt(GreatestLane(most));
   }
 
   /// False if the samples had better not share a list.
-  HWY_NOINLINE bool SetGroup(Group<N>& group) const
+  HWY_NOINLINE bool SetGroup(Group<N>& group)
   {
-    const float travel =
-      this->SetAxes(group, LeastLane(this->F.Along), LeastLane(this->GetLeastAcross()));
-    const V lambda = hn::MulSub(
-      hn::Iota(DF(), 0.0f), Const(2.0f / std::max<float>(1.0f, Lanes - 1.0f)), Const(1.0f));
-    // u and -u are the same axis.
-    V cosine = hn::Zero(DF());
+    V along = this->F[group.Begin].Along;
+    V across = this->GetLeastAcross(group.Begin);
+    V sign[TileRegisters];
+    V place2[TileRegisters];
+    V direction2[TileRegisters];
+    V bend2[TileRegisters];
     for (int axis = 0; axis < N; ++axis)
     {
-      cosine =
-        hn::MulAdd(this->F.U[axis], Const(hn::GetLane(this->F.U[axis])), cosine);
+      this->Cell[axis] = hn::GetLane(this->P[group.Begin].Cell[axis]);
     }
-    const V sign = hn::And(cosine, hn::BitCast(DF(), hn::Set(DU(), 0x80000000u)));
-    V direction2 = hn::Zero(DF());
-    V bend2 = hn::Zero(DF());
+    for (std::size_t r = group.Begin; r < group.End; ++r)
+    {
+      const Frame<N>& frame = this->F[r];
+      along = hn::Min(along, frame.Along);
+      across = hn::Min(across, this->GetLeastAcross(r));
+      // u and -u are the same axis.
+      V cosine = hn::Zero(DF());
+      for (int axis = 0; axis < N; ++axis)
+      {
+        const float first = hn::GetLane(this->F[group.Begin].U[axis]);
+        cosine = hn::MulAdd(frame.U[axis], Const(first), cosine);
+        this->Shift[r][axis] = hn::Zero(DF());
+        if (!Aligned || axis == 0)
+        {
+          this->Shift[r][axis] = hn::ConvertTo(DF(),
+            hn::BitCast(DI(), hn::Sub(this->P[r].Cell[axis], hn::Set(DU(), this->Cell[axis]))));
+        }
+      }
+      sign[r] = hn::And(cosine, hn::BitCast(DF(), hn::Set(DU(), 0x80000000u)));
+      place2[r] = direction2[r] = bend2[r] = hn::Zero(DF());
+    }
+    const float travel = this->SetAxes(group, LeastLane(along), LeastLane(across));
     float length2 = 0.0f;
     for (int axis = 0; axis < N; ++axis)
     {
-      const V rest = SplitLinear(
-        hn::Xor(this->F.U[axis], sign), lambda, group.U[axis], group.UStep[axis]);
-      direction2 = hn::MulAdd(rest, rest, direction2);
+      SplitLinear(group, group.U[axis], group.UStep[axis], direction2,
+        [&](std::size_t r) HWY_ATTR { return hn::Xor(this->F[r].U[axis], sign[r]); });
       group.Bend[axis] = group.BendStep[axis] = 0.0f;
       if (this->Setup.Curved)
       {
-        const V change =
-          SplitLinear(this->F.Bend[axis], lambda, group.Bend[axis], group.BendStep[axis]);
-        bend2 = hn::MulAdd(change, change, bend2);
+        SplitLinear(group, group.Bend[axis], group.BendStep[axis], bend2,
+          [&](std::size_t r) HWY_ATTR { return this->F[r].Bend[axis]; });
         length2 += group.Bend[axis] * group.Bend[axis];
       }
-    }
-    group.BendLength = std::sqrt(length2);
-    float place = 0.0f;
-    if constexpr (Aligned)
-    {
-      for (int axis = 1; axis < N; ++axis)
+      if (Aligned && axis > 0)
       {
-        group.Place[axis] = hn::GetLane(this->P.Fraction[axis]);
+        group.Place[axis] = hn::GetLane(this->P[group.Begin].Fraction[axis]);
         group.PlaceStep[axis] = 0.0f;
       }
-      place = GreatestLane(hn::Abs(SplitLinear(
-        hn::Add(this->Shift[0], this->P.Fraction[0]), lambda, group.Place[0], group.PlaceStep[0])));
+      else
+      {
+        SplitLinear(group, group.Place[axis], group.PlaceStep[axis], place2,
+          [&](std::size_t r)
+            HWY_ATTR { return hn::Add(this->Shift[r][axis], this->P[r].Fraction[axis]); });
+      }
     }
-    else
+    float place = GetLargest(group, place2);
+    if (this->IsOblique())
     {
-      V index[N];
-      V d[N];
-      V rest[N];
-      for (int axis = 0; axis < N; ++axis)
+      // From indices of the lattice to distances; its steps have length 1 at most.
+      float step[N];
+      for (int i = 0; i < N; ++i)
       {
-        float step;
-        index[axis] = hn::Add(this->Shift[axis], this->P.Fraction[axis]);
-        SplitLinear(index[axis], lambda, group.Place[axis], step);
+        step[i] = 0.0f;
+        for (int j = 0; j < N; ++j)
+        {
+          step[i] += static_cast<float>(this->Setup.LatticeSteps[i][j]) * group.PlaceStep[j];
+        }
       }
-      this->ToPlace(index, d);
-      for (int axis = 0; axis < N; ++axis)
-      {
-        float middle;
-        rest[axis] = SplitLinear(d[axis], lambda, middle, group.PlaceStep[axis]);
-      }
-      place = std::sqrt(GreatestLane(Dot(rest, rest)));
+      std::copy(step, step + N, group.PlaceStep);
+      place *= 2.0f;
     }
-    group.SetBounds(place, std::sqrt(GreatestLane(direction2)),
-      this->Setup.Curved ? std::sqrt(GreatestLane(bend2)) : 0.0f, travel);
+    group.BendLength = std::sqrt(length2);
+    group.SetBounds(place, GetLargest(group, direction2),
+      this->Setup.Curved ? GetLargest(group, bend2) : 0.0f, travel, this->IsOblique());
     return group.GetLargestWidth() - group.HalfWidth < LargestSpread;
   }
 
   // ---- listing corners --------------------------------------------------------------------------
+
+  /// Bounds of loops over corners, whatever the numbers are.
+  static WALK_INLINE VI ToCorners(V place)
+  {
+    return hn::ConvertTo(DI(), hn::Max(hn::Min(place, Const(1000.0f)), Const(-1000.0f)));
+  }
 
   WALK_INLINE bool IsOblique() const
   {
@@ -459,34 +539,34 @@ private:
 
   HWY_NOINLINE void AddGroup(const Group<N>& group)
   {
-    HWY_ALIGN float rowY[ListRoom];
-    HWY_ALIGN float rowZ[ListRoom];
-    HWY_ALIGN float firsts[Lanes];
-    HWY_ALIGN float lasts[Lanes];
+    HWY_ALIGN std::int32_t rowY[ListSize];
+    HWY_ALIGN std::int32_t rowZ[ListSize];
+    HWY_ALIGN std::int32_t firsts[Lanes];
+    HWY_ALIGN std::int32_t lasts[Lanes];
     std::size_t rows = 0;
     CornerList<N> list;
     const IndexAxis axisY = this->GetIndexAxis(group, 1);
     const V length = Const(group.GetLength() + this->Setup.JitterRadius);
     V first;
     V last;
-    const auto addRows = [&](float y, float lastY, float z) HWY_ATTR
+    const auto addRows = [&](int y, int lastY, int z) HWY_ATTR
     {
-      for (; y <= lastY; y += Lanes)
+      for (; y <= lastY; y += static_cast<int>(Lanes))
       {
-        hn::StoreU(hn::Iota(DF(), y), DF(), rowY + rows);
-        hn::StoreU(Const(z), DF(), rowZ + rows);
-        rows += std::min(Lanes, static_cast<std::size_t>(lastY - y) + 1);
-        if (rows >= ListSize)
+        if (rows + Lanes > ListSize)
         {
           this->AddRows(group, rowY, rowZ, rows, list);
           rows = 0;
         }
+        hn::StoreU(hn::Iota(DI(), y), DI(), rowY + rows);
+        hn::StoreU(hn::Set(DI(), z), DI(), rowZ + rows);
+        rows += static_cast<std::size_t>(std::min(static_cast<int>(Lanes), lastY - y + 1));
       }
     };
     if constexpr (N == 2)
     {
       this->GetRange(group, 1, axisY, hn::Neg(length), length, first, last);
-      addRows(ToCorner(hn::GetLane(first)), ToCorner(hn::GetLane(last)), 0.0f);
+      addRows(ToCorner(hn::GetLane(first)), ToCorner(hn::GetLane(last)), 0);
     }
     else
     {
@@ -504,12 +584,11 @@ private:
         }
         this->GetRange(group, 1, axisY, low, high, first, last);
         last = hn::IfThenElse(hn::Gt(low, high), Const(-1e9f), last);
-        hn::Store(first, DF(), firsts);
-        hn::Store(last, DF(), lasts);
+        hn::Store(ToCorners(first), DI(), firsts);
+        hn::Store(ToCorners(last), DI(), lasts);
         for (int i = 0; i < static_cast<int>(Lanes) && z + i <= lastZ; ++i)
         {
-          addRows(std::max(firsts[i], -1000.0f), std::min(lasts[i], 1000.0f),
-            static_cast<float>(z + i));
+          addRows(firsts[i], lasts[i], z + i);
         }
       }
     }
@@ -518,8 +597,8 @@ private:
   }
 
   /// Puts the corners of these rows on the list.
-  HWY_NOINLINE void AddRows(const Group<N>& group, const float* rowY, const float* rowZ,
-    std::size_t rows, CornerList<N>& list)
+  HWY_NOINLINE void AddRows(const Group<N>& group, const std::int32_t* rowY,
+    const std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
   {
     HWY_ALIGN std::int32_t firsts[Lanes];
     HWY_ALIGN std::int32_t lasts[Lanes];
@@ -530,31 +609,29 @@ private:
       V high = Const(axis.BoxHigh);
       if (this->Params.AnisotropicWeight)
       {
-        this->CutRows(group, Load(rowY + i), Load(rowZ + i), low, high);
+        this->CutRows(group, hn::ConvertTo(DF(), hn::LoadU(DI(), rowY + i)),
+          hn::ConvertTo(DF(), hn::LoadU(DI(), rowZ + i)), low, high);
       }
-      // Bounds of the loop, whatever the numbers are.
-      const V least = Const(-1000.0f);
-      const V most = Const(1000.0f);
-      hn::Store(hn::ConvertTo(DI(), hn::Ceil(hn::Min(hn::Max(low, least), most))), DI(), firsts);
-      hn::Store(hn::ConvertTo(DI(), hn::Floor(hn::Max(hn::Min(high, most), least))), DI(), lasts);
+      hn::Store(ToCorners(hn::Ceil(low)), DI(), firsts);
+      hn::Store(ToCorners(hn::Floor(high)), DI(), lasts);
       const std::size_t count = std::min(Lanes, rows - i);
       for (std::size_t lane = 0; lane < count; ++lane)
       {
         for (int x = firsts[lane]; x <= lasts[lane]; x += static_cast<int>(Lanes))
         {
-          hn::StoreU(hn::Iota(DF(), static_cast<float>(x)), DF(), list.Offset[0] + list.Count);
-          hn::StoreU(Const(rowY[i + lane]), DF(), list.Offset[1] + list.Count);
-          if constexpr (N == 3)
-          {
-            hn::StoreU(Const(rowZ[i + lane]), DF(), list.Offset[2] + list.Count);
-          }
-          list.Count += static_cast<std::size_t>(
-            std::min(static_cast<int>(Lanes), lasts[lane] - x + 1));
-          if (list.Count >= ListSize)
+          if (list.Count + Lanes > ListSize)
           {
             this->AddCorners(group, list);
             list.Count = 0;
           }
+          hn::StoreU(hn::Iota(DI(), x), DI(), list.Index[0] + list.Count);
+          hn::StoreU(hn::Set(DI(), rowY[i + lane]), DI(), list.Index[1] + list.Count);
+          if constexpr (N == 3)
+          {
+            hn::StoreU(hn::Set(DI(), rowZ[i + lane]), DI(), list.Index[2] + list.Count);
+          }
+          list.Count += static_cast<std::size_t>(
+            std::min(static_cast<int>(Lanes), lasts[lane] - x + 1));
         }
       }
     }
@@ -567,7 +644,6 @@ private:
   WALK_INLINE void CutRows(const Group<N>& group, V rowY, V rowZ, V& low, V& high) const
   {
     V row[N];
-    V step[N];
     V index[N];
     index[0] = Const(-group.Place[0]);
     index[1] = hn::Sub(rowY, Const(group.Place[1]));
@@ -581,7 +657,6 @@ private:
     for (int i = 0; i < N; ++i)
     {
       const auto component = static_cast<float>(this->Setup.LatticeSteps[i][0]);
-      step[i] = Const(component);
       se += component * group.U[i];
       row[i] = hn::Add(row[i], Const(this->Setup.JitterMiddle));
       s0 = hn::MulAdd(row[i], Const(group.U[i]), s0);
@@ -593,14 +668,28 @@ private:
     low = hn::Max(low, hn::Sub(middle, half));
     high = hn::Min(high, hn::Add(middle, half));
 
+    for (int round = 0; round < (this->Setup.Curved ? 2 : 1); ++round)
+    {
+      this->CutByTube(group, row, s0, se, low, high);
+    }
+    low = hn::Sub(low, Const(group.RowSpread));
+    high = hn::Add(high, Const(group.RowSpread));
+  }
+
+  /// What a tube around the parabola leaves of [low, high], whose s bound its sag and its width.
+  WALK_INLINE void CutByTube(
+    const Group<N>& group, const V (&row)[N], V s0, float se, V& low, V& high) const
+  {
+    const float radius = this->Setup.JitterRadius;
     const V first = hn::MulAdd(low, Const(se), s0);
     const V last = hn::MulAdd(high, Const(se), s0);
     const V most = hn::Max(hn::Abs(first), hn::Abs(last));
     const V least = hn::IfThenElseZero(hn::Ge(hn::Mul(first, last), hn::Zero(DF())),
       hn::Min(hn::Abs(first), hn::Abs(last)));
-    V width = hn::Add(group.GetWidth(hn::Sub(least, Const(radius)),
-                        hn::Add(most, Const(radius)), group.Across),
-      Const(this->GetLooseness(group)));
+    V width = hn::Add(
+      group.GetTaper(hn::Sub(least, Const(radius + group.AlongReach))),
+      hn::Add(Group<N>::GetMore(hn::Add(most, Const(radius)), group.Across),
+        Const(this->GetLooseness(group))));
     V sag = hn::Zero(DF());
     if (this->Setup.Curved)
     {
@@ -613,7 +702,7 @@ private:
     }
     // |t0 + x te| < width with t the part across the flow, t0 shifted by the sag.
     V B = hn::Zero(DF());
-    V C = hn::Neg(hn::Mul(width, width));
+    V C = hn::Neg(hn::Mul(width, hn::Max(width, hn::Zero(DF()))));
     float A = 0.0f;
     for (int i = 0; i < N; ++i)
     {
@@ -637,13 +726,13 @@ private:
 
   // ---- listed corners ---------------------------------------------------------------------------
 
-  WALK_INLINE VU HashCorners(const V (&offset)[N]) const
+  WALK_INLINE VU HashCorners(const CornerList<N>& list, std::size_t i) const
   {
     VU hash = hn::Set(DU(), this->Octave.Seed);
     for (int axis = 0; axis < N; ++axis)
     {
       VU index = hn::Add(hn::Set(DU(), this->Cell[axis]),
-        hn::BitCast(DU(), hn::ConvertTo(DI(), offset[axis])));
+        hn::BitCast(DU(), hn::Load(DI(), list.Index[axis] + i)));
       if (this->Octave.Period[axis] > 0)
       {
         index = WrapIndex(index, this->Octave.Period[axis]);
@@ -658,9 +747,9 @@ private:
     return hn::Sub(HashToUnit(HashStream(hash, 3 + axis)), Const(this->Setup.JitterDown));
   }
 
-  /// Which of these corners reach one of the samples.
-  WALK_INLINE hn::Mask<DF> GetReaching(
-    const Group<N>& group, const V (&offset)[N], VU hash) const
+  /// Sets the bits, from bit `firstBit` on, of those of these corners that reach samples of a register.
+  WALK_INLINE void AddReaching(const Group<N>& group, const V (&offset)[N], VU hash,
+    hn::Mask<DF> listed, std::size_t firstBit, std::uint64_t (&bits)[TileRegisters]) const
   {
     V index[N];
     V v[N];
@@ -679,7 +768,12 @@ private:
       s = hn::MulAdd(v[axis], Const(group.U[axis]), s);
     }
     const V sag = hn::Mul(hn::Mul(s, s), Const(0.5f));
-    const V sagStep = hn::Mul(s, Const(group.AlongStep));
+    V sStep = Const(-group.AlongStep);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      sStep = hn::MulAdd(v[axis], Const(group.UStep[axis]), sStep);
+    }
+    const V sagStep = hn::Mul(s, sStep);
     V t2 = hn::Zero(DF());
     V step2 = Const(1e-20f);
     V tStep = hn::Zero(DF());
@@ -693,23 +787,47 @@ private:
         const V bend = Const(group.Bend[axis]);
         t = hn::NegMulAdd(sag, bend, t);
         step = hn::MulAdd(sag, Const(group.BendStep[axis]), step);
-        step = hn::NegMulAdd(sagStep, bend, step);
+        step = hn::MulAdd(sagStep, bend, step);
       }
       t2 = hn::MulAdd(t, t, t2);
       tStep = hn::MulAdd(t, step, tStep);
       step2 = hn::MulAdd(step, step, step2);
     }
-    // |t - λ step| at the λ of [-1, 1] where it is least.
-    const V one = Const(1.0f);
-    const V lambda = hn::Max(hn::Min(hn::Div(tStep, step2), one), hn::Neg(one));
-    const V least = hn::MulAdd(hn::MulSub(lambda, step2, hn::Add(tStep, tStep)), lambda, t2);
-    const V distance = hn::Abs(s);
-    const V width = group.GetWidth(distance, distance, group.Rest);
-    return hn::And(hn::Le(least, hn::MulAdd(width, width, Const(1e-5f))),
-      hn::Le(distance, Const(group.GetLength())));
+    const V more = Group<N>::GetMore(hn::Abs(s), group.Rest);
+    // |t - λ step| at the λ where it is least, of those that a register has.
+    const V best = hn::Div(tStep, step2);
+    for (std::size_t r = group.Begin; r < group.End; ++r)
+    {
+      const float step = group.LambdaStep;
+      const float first = static_cast<float>(Lanes * (r - group.Begin)) * step - 1.0f;
+      const float half = 0.5f * static_cast<float>(Lanes - 1) * step;
+      const V lambda = hn::Max(hn::Min(best, Const(first + 2.0f * half)), Const(first));
+      const V least = hn::MulAdd(hn::MulSub(lambda, step2, hn::Add(tStep, tStep)), lambda, t2);
+      // Distance along the flow from the middle of the register.
+      const V distance = hn::Abs(hn::MulAdd(sStep, Const(first + half), s));
+      const V shortest =
+        hn::Sub(distance, hn::MulAdd(hn::Abs(sStep), Const(half), Const(group.AlongRest)));
+      const V width = hn::Add(more, group.GetTaper(shortest));
+      const auto inside = hn::Le(least, hn::MulAdd(width, width, Const(1e-5f)));
+      bits[r] |=
+        ToBits(hn::And(listed, hn::And(inside, hn::Gt(width, hn::Zero(DF()))))) << firstBit;
+    }
   }
 
-  WALK_INLINE void Describe(const V (&offset)[N], VU hash, CornerBatch<N>& batch) const
+  static WALK_INLINE std::uint64_t ToBits(hn::Mask<DF> mask)
+  {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(DF(), mask, bytes);
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < (Lanes + 7) / 8; ++i)
+    {
+      bits |= static_cast<std::uint64_t>(bytes[i]) << (8 * i);
+    }
+    return bits;
+  }
+
+  WALK_INLINE void Describe(
+    const V (&offset)[N], VU hash, CornerList<N>& list, std::size_t i) const
   {
     V g[N];
     if (!Variant || (this->Params.Surflet == Basis::Gradient &&
@@ -732,30 +850,30 @@ private:
     V window = Const(1.0f);
     for (int axis = 0; axis < N; ++axis)
     {
-      hn::Store(offset[axis], DF(), batch.Offset[axis]);
-      hn::Store(g[axis], DF(), batch.Gradient[axis]);
+      hn::Store(offset[axis], DF(), list.Offset[axis] + i);
+      hn::Store(g[axis], DF(), list.Gradient[axis] + i);
       if (Aligned && !Variant && axis > 0)
       {
-        const V v = hn::Sub(offset[axis], this->P.Fraction[axis]);
-        hn::Store(v, DF(), batch.FromRow[axis]);
+        const V v = hn::Sub(offset[axis], this->P[0].Fraction[axis]);
+        hn::Store(v, DF(), list.FromRow[axis] + i);
         if (this->Params.LatticeWindow)
         {
           window = hn::Mul(window, QuinticFade(hn::Mul(hn::Abs(v), this->InverseReach)));
         }
       }
     }
-    hn::Store(window, DF(), batch.RowWindow);
+    hn::Store(window, DF(), list.RowWindow + i);
     if constexpr (Variant)
     {
-      this->DescribeVariant(hash, batch);
+      this->DescribeVariant(hash, list, i);
     }
   }
 
-  WALK_INLINE void DescribeVariant(VU hash, CornerBatch<N>& batch) const
+  WALK_INLINE void DescribeVariant(VU hash, CornerList<N>& list, std::size_t i) const
   {
     for (int axis = 0; axis < N && this->Setup.JitterRadius > 0.0f; ++axis)
     {
-      hn::Store(this->GetJitter(hash, axis), DF(), batch.Jitter[axis]);
+      hn::Store(this->GetJitter(hash, axis), DF(), list.Jitter[axis] + i);
     }
     V amplitude = Const(1.0f);
     if (this->Params.Motion)
@@ -765,7 +883,7 @@ private:
       const V tau = hn::Sub(clock, hn::Floor(clock));
       const V centered = hn::Sub(tau, Const(0.5f));
       hn::Store(
-        hn::Mul(centered, Const(static_cast<float>(this->Params.Speed))), DF(), batch.Travel);
+        hn::Mul(centered, Const(static_cast<float>(this->Params.Speed))), DF(), list.Travel + i);
       const V wave = CosPi(centered); // sin(π τ)
       amplitude = hn::Mul(hn::Mul(wave, wave), Const(1.6329931619f));
     }
@@ -775,51 +893,74 @@ private:
         HashToUnit(HashStream(hash, 2)), Const(static_cast<float>(this->Params.Density)));
       amplitude = hn::IfThenElseZero(on, amplitude);
     }
-    hn::Store(amplitude, DF(), batch.Amplitude);
+    hn::Store(amplitude, DF(), list.Amplitude + i);
   }
 
   /// Adds those corners of the list that reach the samples to their sums.
-  HWY_NOINLINE void AddCorners(const Group<N>& group, const CornerList<N>& list)
+  HWY_NOINLINE void AddCorners(const Group<N>& group, CornerList<N>& list)
   {
-    CornerBatch<N> batch;
+    std::uint64_t bits[TileRegisters] = {};
+    // What stands behind the end of the list must at least be an index.
+    for (int axis = 0; axis < N; ++axis)
+    {
+      for (std::size_t i = list.Count; i % Lanes != 0; ++i)
+      {
+        list.Index[axis][i] = 0;
+      }
+    }
     for (std::size_t i = 0; i < list.Count; i += Lanes)
     {
-      auto reaching = hn::FirstN(DF(), list.Count - i);
+      const auto listed = hn::FirstN(DF(), list.Count - i);
       V offset[N];
       for (int axis = 0; axis < N; ++axis)
       {
-        // What stands behind the end of the list is no number.
-        offset[axis] = hn::IfThenElseZero(reaching, Load(list.Offset[axis] + i));
+        offset[axis] = hn::ConvertTo(DF(), hn::Load(DI(), list.Index[axis] + i));
       }
-      const VU hash = this->HashCorners(offset);
+      const VU hash = this->HashCorners(list, i);
       if (this->Params.AnisotropicWeight)
       {
-        reaching = hn::And(reaching, this->GetReaching(group, offset, hash));
+        this->AddReaching(group, offset, hash, listed, i, bits);
       }
-      std::uint8_t bytes[8] = {};
-      hn::StoreMaskBits(DF(), reaching, bytes);
-      std::uint64_t bits;
-      std::memcpy(&bits, bytes, sizeof(bits));
-      if (bits != 0)
+      else
       {
-        this->Describe(offset, hash, batch);
-        this->AddSurflets(batch, bits);
+        for (std::uint64_t& all : bits)
+        {
+          all |= ToBits(listed) << i;
+        }
       }
+      this->Describe(offset, hash, list, i);
+    }
+    for (std::size_t r = group.Begin; r < group.End; ++r)
+    {
+      this->AddSurflets(r, list, bits[r]);
     }
   }
 
-  HWY_NOINLINE void AddSurflets(const CornerBatch<N>& batch, std::uint64_t bits)
+  /// Adds the corners whose bits are set.
+  HWY_NOINLINE void AddSurflets(std::size_t r, const CornerList<N>& list, std::uint64_t bits)
   {
+    const Sample sample{ this->F[r], this->P[r].Fraction, this->Shift[r], this->CrossFraction[r] };
+    Sums sums = this->Total[r];
+    this->Visited += this->GetCount(r) * hwy::PopCount(bits);
     for (; bits != 0; bits &= bits - 1)
     {
-      this->AddSurflet(batch, hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
-      ++this->Visited;
+      this->AddSurflet(sample, list, hwy::Num0BitsBelowLS1Bit_Nonzero64(bits), sums);
     }
+    this->Total[r] = sums;
   }
 
   // ---- surflets ---------------------------------------------------------------------------------
 
-  WALK_INLINE V GetWindow(const CornerBatch<N>& batch, std::size_t corner, const V (&v)[N]) const
+  /// A register of samples.
+  struct Sample
+  {
+    const Frame<N>& F;
+    const V (&Fraction)[N];
+    const V (&Shift)[N];
+    const V& CrossFraction;
+  };
+
+  WALK_INLINE V GetWindow(const CornerList<N>& list, std::size_t corner, const V (&v)[N]) const
   {
     if (!this->Params.LatticeWindow)
     {
@@ -830,7 +971,7 @@ private:
       V window = QuinticFade(hn::Mul(hn::Abs(v[0]), this->InverseReach));
       if constexpr (Aligned)
       {
-        return hn::Mul(Const(batch.RowWindow[corner]), window);
+        return hn::Mul(Const(list.RowWindow[corner]), window);
       }
       for (int axis = 1; axis < N; ++axis)
       {
@@ -854,19 +995,20 @@ private:
     }
   }
 
-  WALK_INLINE void AddSurflet(const CornerBatch<N>& batch, std::size_t corner)
+  WALK_INLINE void AddSurflet(
+    const Sample& sample, const CornerList<N>& list, std::size_t corner, Sums& sums) const
   {
     V offset[N];
     V v[N];
     for (int axis = 0; axis < N; ++axis)
     {
-      offset[axis] = Const(batch.Offset[axis][corner]);
+      offset[axis] = Const(list.Offset[axis][corner]);
       if (!Aligned || axis == 0)
       {
-        offset[axis] = hn::Sub(offset[axis], this->Shift[axis]);
+        offset[axis] = hn::Sub(offset[axis], sample.Shift[axis]);
       }
-      v[axis] = Aligned && !Variant && axis > 0 ? Const(batch.FromRow[axis][corner])
-                                                : hn::Sub(offset[axis], this->P.Fraction[axis]);
+      v[axis] = Aligned && !Variant && axis > 0 ? Const(list.FromRow[axis][corner])
+                                                : hn::Sub(offset[axis], sample.Fraction[axis]);
     }
     if constexpr (Variant)
     {
@@ -878,34 +1020,34 @@ private:
       this->ToPlace(index, v);
       for (int axis = 0; axis < N && this->Setup.JitterRadius > 0.0f; ++axis)
       {
-        v[axis] = hn::Add(v[axis], Const(batch.Jitter[axis][corner]));
+        v[axis] = hn::Add(v[axis], Const(list.Jitter[axis][corner]));
       }
     }
 
     // Along the flow and across it: s, and t as a vector (in 2D as a number along the normal n).
-    V s = Dot(v, this->F.U);
+    V s = Dot(v, sample.F.U);
     V t[N];
     if constexpr (N == 2)
     {
       // u x v for a far corner is a small difference of large products. The high parts of u have
       // 16 bits, so their products with corners and the difference are exact.
-      t[0] = Variant ? hn::MulSub(this->F.U[0], v[1], hn::Mul(this->F.U[1], v[0]))
-                     : hn::Add(hn::NegMulAdd(this->F.UHigh[1], offset[0],
-                                 hn::Mul(this->F.UHigh[0], offset[1])),
-                         hn::NegMulAdd(this->F.ULow[1], offset[0],
-                           hn::MulSub(this->F.ULow[0], offset[1], this->CrossFraction)));
+      t[0] = Variant ? hn::MulSub(sample.F.U[0], v[1], hn::Mul(sample.F.U[1], v[0]))
+                     : hn::Add(hn::NegMulAdd(sample.F.UHigh[1], offset[0],
+                                 hn::Mul(sample.F.UHigh[0], offset[1])),
+                         hn::NegMulAdd(sample.F.ULow[1], offset[0],
+                           hn::MulSub(sample.F.ULow[0], offset[1], sample.CrossFraction)));
     }
     else
     {
       for (int i = 0; i < N; ++i)
       {
-        t[i] = hn::NegMulAdd(s, this->F.U[i], v[i]);
+        t[i] = hn::NegMulAdd(s, sample.F.U[i], v[i]);
       }
       // u has not quite length 1 and s is rounded: what t still has of u is large beside it.
-      const V rest = Dot(t, this->F.U);
+      const V rest = Dot(t, sample.F.U);
       for (int i = 0; i < N; ++i)
       {
-        t[i] = hn::NegMulAdd(rest, this->F.U[i], t[i]);
+        t[i] = hn::NegMulAdd(rest, sample.F.U[i], t[i]);
       }
       s = hn::Add(s, rest);
     }
@@ -914,13 +1056,13 @@ private:
       const V sag = hn::Mul(hn::Mul(Const(0.5f), s), s);
       if constexpr (N == 2)
       {
-        t[0] = hn::NegMulAdd(sag, this->F.BendAcross, t[0]);
+        t[0] = hn::NegMulAdd(sag, sample.F.BendAcross, t[0]);
       }
       else
       {
         for (int i = 0; i < N; ++i)
         {
-          t[i] = hn::NegMulAdd(sag, this->F.Bend[i], t[i]);
+          t[i] = hn::NegMulAdd(sag, sample.F.Bend[i], t[i]);
         }
       }
     }
@@ -928,30 +1070,30 @@ private:
     {
       if (this->Params.Motion)
       {
-        s = hn::MulAdd(hn::Mul(Const(batch.Travel[corner]), this->F.Sense),
-          hn::Div(Const(1.0f), this->RootAlong), s);
+        s = hn::MulAdd(hn::Mul(Const(list.Travel[corner]), sample.F.Sense),
+          hn::Div(Const(1.0f), hn::Sqrt(sample.F.Along)), s);
       }
     }
 
-    const V ks = hn::Mul(this->F.Along, s);
+    const V ks = hn::Mul(sample.F.Along, s);
     const V t2 = N == 2 ? hn::Mul(t[0], t[0]) : Dot(t, t);
-    V across2 = hn::Mul(this->F.Across, t2);
+    V across2 = hn::Mul(sample.F.Across, t2);
     V r = hn::Zero(DF());
     if (N == 3 && this->Setup.Biaxial)
     {
-      r = Dot(t, this->F.M);
-      across2 = hn::MulAdd(hn::Mul(hn::Sub(this->F.Second, this->F.Across), r), r, across2);
+      r = Dot(t, sample.F.M);
+      across2 = hn::MulAdd(hn::Mul(hn::Sub(sample.F.Second, sample.F.Across), r), r, across2);
     }
     const V q = hn::MulAdd(ks, s, across2);
-    V weight = this->GetWindow(batch, corner, v);
+    V weight = this->GetWindow(list, corner, v);
 
     V amplified = weight;
     if constexpr (Variant)
     {
-      const V amplitude = Const(batch.Amplitude[corner]);
+      const V amplitude = Const(list.Amplitude[corner]);
       if (this->Params.Surflet == Basis::Streaks)
       {
-        this->AddStreak(amplitude, weight, s, across2);
+        this->AddStreak(sample, amplitude, weight, s, across2, sums);
         return;
       }
       if (this->Params.AnisotropicWeight)
@@ -961,11 +1103,11 @@ private:
       amplified = hn::Mul(amplitude, weight);
       if (this->Params.Surflet == Basis::Value)
       {
-        this->Total.Noise =
-          hn::MulAdd(amplified, Const(batch.Gradient[0][corner]), this->Total.Noise);
-        this->Total.Variance =
-          hn::MulAdd(hn::Mul(weight, weight), Const(1.0f / 3.0f), this->Total.Variance);
-        this->Total.Weight = hn::Add(this->Total.Weight, weight);
+        sums.Noise =
+          hn::MulAdd(amplified, Const(list.Gradient[0][corner]), sums.Noise);
+        sums.Variance =
+          hn::MulAdd(hn::Mul(weight, weight), Const(1.0f / 3.0f), sums.Variance);
+        sums.Weight = hn::Add(sums.Weight, weight);
         return;
       }
     }
@@ -979,70 +1121,71 @@ private:
     V Gv[N];
     if constexpr (N == 2)
     {
-      const V bt = hn::Mul(this->F.Across, t[0]);
-      Gv[0] = hn::MulSub(ks, this->F.U[0], hn::Mul(bt, this->F.U[1]));
-      Gv[1] = hn::MulAdd(ks, this->F.U[1], hn::Mul(bt, this->F.U[0]));
+      const V bt = hn::Mul(sample.F.Across, t[0]);
+      Gv[0] = hn::MulSub(ks, sample.F.U[0], hn::Mul(bt, sample.F.U[1]));
+      Gv[1] = hn::MulAdd(ks, sample.F.U[1], hn::Mul(bt, sample.F.U[0]));
     }
     else
     {
       for (int i = 0; i < N; ++i)
       {
-        Gv[i] = hn::MulAdd(ks, this->F.U[i], hn::Mul(this->F.Across, t[i]));
+        Gv[i] = hn::MulAdd(ks, sample.F.U[i], hn::Mul(sample.F.Across, t[i]));
       }
       if (this->Setup.Biaxial)
       {
-        const V er = hn::Mul(hn::Sub(this->F.Second, this->F.Across), r);
+        const V er = hn::Mul(hn::Sub(sample.F.Second, sample.F.Across), r);
         for (int i = 0; i < N; ++i)
         {
-          Gv[i] = hn::MulAdd(er, this->F.M[i], Gv[i]);
+          Gv[i] = hn::MulAdd(er, sample.F.M[i], Gv[i]);
         }
       }
     }
     V g[N];
     for (int axis = 0; axis < N; ++axis)
     {
-      g[axis] = Const(batch.Gradient[axis][corner]);
+      g[axis] = Const(list.Gradient[axis][corner]);
     }
-    this->Total.Noise = hn::MulAdd(amplified, Dot(g, Gv), this->Total.Noise);
+    sums.Noise = hn::MulAdd(amplified, Dot(g, Gv), sums.Noise);
     if (this->Params.Normalize == Normalization::UnitVariance)
     {
       const auto variance = static_cast<float>(GradientVariance(this->Params.Gradients, N));
-      this->Total.Variance = hn::MulAdd(
-        hn::Mul(hn::Mul(weight, weight), Const(variance)), Dot(Gv, Gv), this->Total.Variance);
+      sums.Variance = hn::MulAdd(
+        hn::Mul(hn::Mul(weight, weight), Const(variance)), Dot(Gv, Gv), sums.Variance);
     }
     else
     {
-      this->Total.Weight = hn::Add(this->Total.Weight, weight);
+      sums.Weight = hn::Add(sums.Weight, weight);
     }
   }
 
-  WALK_INLINE void AddStreak(V amplitude, V window, V s, V across2)
+  WALK_INLINE void AddStreak(
+    const Sample& sample, V amplitude, V window, V s, V across2, Sums& sums) const
   {
-    const V sigma = hn::Neg(hn::Mul(s, this->RootAlong));
+    const V sigma = hn::Neg(hn::Mul(s, hn::Sqrt(sample.F.Along)));
     const V across = hn::Sqrt(hn::Max(across2, Const(0.0f)));
-    const V profile = hn::Mul(hn::Mul(window, this->F.Sense),
+    const V profile = hn::Mul(hn::Mul(window, sample.F.Sense),
       hn::Mul(StreakProfile(sigma), FadeOf(this->Params.Interpolant, across)));
     const auto density = static_cast<float>(this->Params.Density);
-    this->Total.Noise = hn::MulAdd(amplitude, profile, this->Total.Noise);
-    this->Total.Variance =
-      hn::MulAdd(hn::Mul(Const(density), profile), profile, this->Total.Variance);
-    this->Total.Weight = hn::Add(this->Total.Weight, profile);
+    sums.Noise = hn::MulAdd(amplitude, profile, sums.Noise);
+    sums.Variance =
+      hn::MulAdd(hn::Mul(Const(density), profile), profile, sums.Variance);
+    sums.Weight = hn::Add(sums.Weight, profile);
   }
 
-  /// Samples that are farther apart than this, as their surflets see it, do not share a batch.
-  static constexpr float LargestSpread = 2.0f;
+  /// Samples that are farther apart than this, as their surflets see it, do not share a list.
+  static constexpr float LargestSpread = 1.5f;
 
   const NoiseSetup& Setup;
   const NoiseParameters& Params;
   const OctaveSetup& Octave;
-  const Frame<N>& F;
-  const Places<N>& P;
   V InverseReach;
-  V RootAlong;
-  V CrossFraction;
+  std::size_t Count = 0;
+  std::uint64_t Visited = 0;
+  Frame<N> F[TileRegisters];
+  Places<N> P[TileRegisters];
+  V CrossFraction[TileRegisters];
   /// The cell that offsets count from, and the samples' own cells from there.
   std::uint32_t Cell[N];
-  V Shift[N];
-  Sums Total;
-  std::uint64_t Visited = 0;
+  V Shift[TileRegisters][N];
+  Sums Total[TileRegisters];
 };

@@ -291,9 +291,13 @@ class RowCorners
 {
 public:
   HWY_INLINE explicit RowCorners(const GradientRows<N>& rows)
-    : Rows(rows)
+    : Stride(rows.GetStride())
     , Lane(hn::Zero(DU()))
   {
+    for (int slot = 0; slot < Slots; ++slot)
+    {
+      this->Rows[slot] = rows.GetRow(slot % 2, slot / 2);
+    }
   }
 
   /// The lanes' cells; those along x are counted from the first column of the rows.
@@ -303,18 +307,21 @@ public:
     this->First = first;
     this->Lane = hn::Sub(cells[0], hn::Set(DU(), first));
   }
-  HWY_INLINE void SelectRow(int oy, int oz) { this->Row = this->Rows.GetRow(oy, oz) + this->First; }
+  HWY_INLINE void SelectRow(int oy, int oz) { this->Row = this->Rows[oy + 2 * oz] + this->First; }
   HWY_INLINE void GetGradient(int ox, V (&g)[N]) const
   {
     const auto lane = hn::IndicesFromVec(DF(), this->Lane);
     for (int axis = 0; axis < N; ++axis)
     {
-      g[axis] = hn::TableLookupLanes(Load(this->Row + axis * this->Rows.GetStride() + ox), lane);
+      g[axis] = hn::TableLookupLanes(Load(this->Row + axis * this->Stride + ox), lane);
     }
   }
 
 private:
-  const GradientRows<N>& Rows;
+  static constexpr int Slots = 1 << (N - 1);
+  // Copies, which the compiler can keep in registers.
+  const float* Rows[Slots];
+  std::size_t Stride;
   const float* Row = nullptr;
   std::size_t First = 0;
   VU Lane;
@@ -337,7 +344,7 @@ HWY_NOINLINE VU WrapIndex(VU index, std::int64_t period)
   }
 }
 
-/// Corners of samples anywhere: hashed lane by lane.
+/// Corners of the cells of samples anywhere: hashed lane by lane.
 template <int N>
 class LaneCorners
 {
@@ -352,32 +359,32 @@ public:
   {
     for (int axis = 0; axis < N; ++axis)
     {
-      this->Cell[axis] = cells[axis];
+      VU next = hn::Add(cells[axis], hn::Set(DU(), 1u));
+      if (this->Octave.Period[axis] > 0)
+      {
+        next = WrapIndex(next, this->Octave.Period[axis]);
+      }
+      this->Hash[axis][0] = HashOneAxis(cells[axis], axis);
+      this->Hash[axis][1] = HashOneAxis(next, axis);
+    }
+    for (VU& hash : this->Hash[0])
+    {
+      hash = hn::Xor(hash, hn::Set(DU(), this->Octave.Seed));
     }
   }
   HWY_INLINE void SelectRow(int oy, int oz)
   {
-    VU row = hn::Xor(HashOneAxis(this->GetIndex(1, oy), 1), hn::Set(DU(), this->Octave.Seed));
-    if constexpr (N == 3)
-    {
-      row = hn::Xor(row, HashOneAxis(this->GetIndex(2, oz), 2));
-    }
-    this->Row = row;
+    this->Row = N == 3 ? hn::Xor(this->Hash[1][oy], this->Hash[N - 1][oz]) : this->Hash[1][oy];
   }
   HWY_INLINE void GetGradient(int ox, V (&g)[N]) const
   {
-    UniformGradient(HashJoinAxes(hn::Xor(HashOneAxis(this->GetIndex(0, ox), 0), this->Row)), g);
+    UniformGradient(HashJoinAxes(hn::Xor(this->Hash[0][ox], this->Row)), g);
   }
 
 private:
-  HWY_INLINE VU GetIndex(int axis, int offset) const
-  {
-    const VU index = hn::Add(this->Cell[axis], hn::Set(DU(), static_cast<std::uint32_t>(offset)));
-    return this->Octave.Period[axis] > 0 ? WrapIndex(index, this->Octave.Period[axis]) : index;
-  }
-
   const OctaveSetup& Octave;
-  VU Cell[N];
+  /// Of the corners below and above.
+  VU Hash[N][2];
   VU Row;
 };
 
@@ -506,76 +513,89 @@ struct Frame
 };
 
 /**
- * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix.
+ * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix. `near` is
+ * the window of the corner below on each axis; that of the one above is 1 less it.
  */
 template <int N, class Corners>
-WALK_INLINE V SumOverCell(const Frame<N>& frame, const V (&f)[N], Corners& corners)
+WALK_INLINE V SumOverCell(
+  const V (&u)[N], V along, V across, const V (&f)[N], const V (&near)[N], Corners& corners)
 {
   // G = b I + (k - b) u uT
-  const V c = hn::Sub(frame.Along, frame.Across);
+  const V c = hn::Sub(along, across);
   V G[N][N];
   for (int i = 0; i < N; ++i)
   {
-    const V cu = hn::Mul(c, frame.U[i]);
+    const V cu = hn::Mul(c, u[i]);
     for (int j = i; j < N; ++j)
     {
-      G[i][j] = i == j ? hn::MulAdd(cu, frame.U[j], frame.Across) : hn::Mul(cu, frame.U[j]);
+      G[i][j] = i == j ? hn::MulAdd(cu, u[j], across) : hn::Mul(cu, u[j]);
       G[j][i] = G[i][j];
     }
   }
-  // Both offsets and both window factors of every axis.
-  const V one = Const(1.0f);
-  V v[N][2];
-  V window[N][2];
-  for (int axis = 0; axis < N; ++axis)
+  // G v and q = v G v at the first corner. A step along an axis adds a column of G to the one, and the
+  // sum of that component before and after to the other.
+  V Gv[N];
+  for (int i = 0; i < N; ++i)
   {
-    v[axis][0] = hn::Neg(f[axis]);
-    v[axis][1] = hn::Sub(one, f[axis]);
-    window[axis][0] = PlainQuinticFade(f[axis]);
-    window[axis][1] = hn::Sub(one, window[axis][0]); // s(1 - t) = 1 - s(t)
+    Gv[i] = hn::Neg(Dot(G[i], f));
   }
-
-  V noise = hn::Zero(DF());
-  for (int oz = 0; oz < (N == 3 ? 2 : 1); ++oz)
+  V q = hn::Neg(Dot(f, Gv));
+  const auto step = [&G](int axis, V(&at)[N], V& distance) HWY_ATTR
   {
-    for (int oy = 0; oy < 2; ++oy)
+    distance = hn::Add(distance, at[axis]);
+    for (int i = 0; i < N; ++i)
     {
-      corners.SelectRow(oy, oz);
-      // What does not change along the row.
-      V Gv0[N];
-      for (int i = 0; i < N; ++i)
-      {
-        Gv0[i] = hn::Mul(G[i][1], v[1][oy]);
-        if constexpr (N == 3)
-        {
-          Gv0[i] = hn::MulAdd(G[i][2], v[2][oz], Gv0[i]);
-        }
-      }
-      V row = hn::Zero(DF());
-      for (int ox = 0; ox < 2; ++ox)
-      {
-        V Gv[N];
-        for (int i = 0; i < N; ++i)
-        {
-          Gv[i] = hn::MulAdd(G[i][0], v[0][ox], Gv0[i]);
-        }
-        V q = hn::MulAdd(v[0][ox], Gv[0], hn::Mul(v[1][oy], Gv[1]));
-        if constexpr (N == 3)
-        {
-          q = hn::MulAdd(v[2][oz], Gv[2], q);
-        }
-        V g[N];
-        corners.GetGradient(ox, g);
-        row = hn::MulAdd(hn::Mul(window[0][ox], PlainQuinticFade(q)), Dot(g, Gv), row);
-      }
-      const V rowWindow = N == 3 ? hn::Mul(window[1][oy], window[N - 1][oz]) : window[1][oy];
-      noise = hn::MulAdd(row, rowWindow, noise);
+      at[i] = hn::Add(at[i], G[i][axis]);
     }
+    distance = hn::Add(distance, at[axis]);
+  };
+  // s(1 - t) = 1 - s(t): the sum over two neighbours is far + near (lower - upper).
+  const auto addRow = [&](int oy, int oz) HWY_ATTR
+  {
+    corners.SelectRow(oy, oz);
+    V at[N];
+    V g[N];
+    V distance = q;
+    std::copy(Gv, Gv + N, at);
+    corners.GetGradient(0, g);
+    const V lower = hn::Mul(PlainQuinticFade(distance), Dot(g, at));
+    step(0, at, distance);
+    corners.GetGradient(1, g);
+    const V upper = hn::Mul(PlainQuinticFade(distance), Dot(g, at));
+    return hn::MulAdd(near[0], hn::Sub(lower, upper), upper);
+  };
+  const auto addSlice = [&](int oz) HWY_ATTR
+  {
+    const V lower = addRow(0, oz);
+    step(1, Gv, q);
+    const V upper = addRow(1, oz);
+    return hn::MulAdd(near[1], hn::Sub(lower, upper), upper);
+  };
+  if constexpr (N == 2)
+  {
+    return addSlice(0);
   }
-  return noise;
+  else
+  {
+    V next[N];
+    V nextQ = q;
+    std::copy(Gv, Gv + N, next);
+    step(2, next, nextQ);
+    const V lower = addSlice(0);
+    std::copy(next, next + N, Gv);
+    q = nextQ;
+    const V upper = addSlice(1);
+    return hn::MulAdd(near[2], hn::Sub(lower, upper), upper);
+  }
 }
 
 #include "SteerableNoiseWalk-inl.h"
+
+/// An eigenvalue at full strength, at these strengths.
+HWY_INLINE V AtStrength(double eigenvalue, V strength)
+{
+  return hn::MulAdd(strength, Const(static_cast<float>(eigenvalue) - 1.0f), Const(1.0f));
+}
 
 /// Puts the noise of an octave into the block, or adds it to that of the octaves before.
 WALK_INLINE void AddOctave(
@@ -629,18 +649,41 @@ WALK_INLINE void AddWalks(const NoiseSetup& setup, const OctaveSetup& octave, Me
   }
 }
 
-/// The same for Quality 0 without extensions.
+/**
+ * The same for Quality 0 without extensions; `getPlaces` also gives the windows of the lower corners.
+ * `uniform`: the metrics have the same strength.
+ */
 template <int N, class Corners, class GetPlaces>
 WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
-  std::size_t count, Corners& corners, std::uint64_t& visited, GetPlaces&& getPlaces)
+  std::size_t count, bool uniform, Corners& corners, std::uint64_t& visited, GetPlaces&& getPlaces)
 {
+  const EigenvalueRange range = VectorEigenvalues(setup.Parameters, N);
+  const V strength = Const(static_cast<float>(setup.Parameters.Strength));
+  const V along = AtStrength(range.Along, strength);
+  const V across = AtStrength(range.Across, strength);
+  const bool alone = setup.Octaves.size() == 1 && !setup.Parameters.Turbulence;
   for (std::size_t i = 0; i < count; i += Lanes)
   {
     Places<N> places;
-    getPlaces(i, places);
+    V near[N];
+    getPlaces(i, places, near);
     corners.SetCells(places.Cell);
-    const Frame<N> frame(setup, block, i, octave.CellSize);
-    AddOctave(setup, octave, block, i, SumOverCell<N>(frame, places.Fraction, corners));
+    V u[N];
+    for (int axis = 0; axis < N; ++axis)
+    {
+      u[axis] = Load(block.U[axis] + i);
+    }
+    const V k = uniform ? along : Load(block.Along + i);
+    const V b = uniform ? across : Load(block.Across + i);
+    const V noise = SumOverCell<N>(u, k, b, places.Fraction, near, corners);
+    if (alone)
+    {
+      hn::StoreU(noise, DF(), block.Noise + i);
+    }
+    else
+    {
+      AddOctave(setup, octave, block, i, noise);
+    }
   }
   visited += count << N;
 }
@@ -648,20 +691,26 @@ WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, Me
 // ---- metrics ------------------------------------------------------------------------------------
 
 /**
- * Unit vectors of `count` tuples of 3 floats, 0 where there is none, and their lengths. In 2D the
- * third component is not looked at. `low`: also what stays behind the high parts.
+ * Unit vectors of `count` tuples of 3 floats, 0 where there is none. In 2D the third component is not
+ * looked at. Not if `Bare`: also their lengths, and what stays behind the high parts. Returns whether
+ * all of them have a direction beyond doubt.
  */
-template <int N>
-HWY_NOINLINE void UnitVectors(const float* tuples, std::size_t count, float* const (&unit)[3],
-  float* length, float* const* low = nullptr)
+template <int N, bool Bare>
+HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* const (&unit)[3],
+  float* length = nullptr, float* const* low = nullptr)
 {
-  HWY_ALIGN float tail[3 * Lanes] = {};
+  bool all = true;
+  HWY_ALIGN float tail[3 * Lanes];
   for (std::size_t i = 0; i < count; i += Lanes)
   {
     const float* from = tuples + 3 * i;
     if (i + Lanes > count)
     {
-      std::copy(from, tuples + 3 * count, tail);
+      // The last tuple stands for those behind it.
+      for (std::size_t value = 0; value < 3 * Lanes; ++value)
+      {
+        tail[value] = from[std::min(value, 3 * (count - i) - 3 + value % 3)];
+      }
       from = tail;
     }
     V u[3];
@@ -674,20 +723,23 @@ HWY_NOINLINE void UnitVectors(const float* tuples, std::size_t count, float* con
     // NaN fails both comparisons; what squares to too much or too little is looked at again.
     const auto good = hn::And(hn::Gt(length2, Const(1e-30f)), hn::Lt(length2, Const(1e30f)));
     const V norm = hn::Sqrt(length2);
-    const V inverse = hn::IfThenElseZero(good, hn::Div(Const(1.0f), norm));
+    const V inverse = hn::Div(Const(1.0f), norm);
     for (int axis = 0; axis < N; ++axis)
     {
-      const V component = hn::IfThenElseZero(good, hn::Mul(u[axis], inverse));
+      const V component = hn::Mul(u[axis], inverse);
       hn::StoreU(component, DF(), unit[axis] + i);
-      if (low)
+      if (!Bare && N == 2)
       {
-        const V rest = hn::MulSub(u[axis], inverse, HighPart(component));
-        hn::StoreU(hn::IfThenElseZero(good, rest), DF(), low[axis] + i);
+        hn::StoreU(hn::MulSub(u[axis], inverse, HighPart(component)), DF(), low[axis] + i);
       }
     }
-    hn::StoreU(norm, DF(), length + i);
+    if (!Bare)
+    {
+      hn::StoreU(norm, DF(), length + i);
+    }
     if (!hn::AllTrue(DF(), good))
     {
+      all = false;
       for (std::size_t lane = 0; lane < Lanes && i + lane < count; ++lane)
       {
         Vector<N> vector;
@@ -698,22 +750,27 @@ HWY_NOINLINE void UnitVectors(const float* tuples, std::size_t count, float* con
         const double largest = vector.cwiseAbs().maxCoeff();
         const bool any = largest > 0.0 && vector.allFinite();
         const double norm2 = vector.squaredNorm();
-        if (any && !(norm2 > 1e-30 && norm2 < 1e30))
+        if (any && norm2 > 1e-30 && norm2 < 1e30)
         {
-          vector.normalize(); // in double
-          for (int axis = 0; axis < N; ++axis)
+          continue;
+        }
+        vector = any ? Vector<N>(vector.normalized()) : Vector<N>::Zero(); // in double
+        for (int axis = 0; axis < N; ++axis)
+        {
+          unit[axis][i + lane] = static_cast<float>(vector[axis]);
+          if (!Bare && N == 2)
           {
-            unit[axis][i + lane] = static_cast<float>(vector[axis]);
-            if (low)
-            {
-              low[axis][i + lane] = LowPart(vector[axis]);
-            }
+            low[axis][i + lane] = LowPart(vector[axis]);
           }
         }
-        length[i + lane] = any ? static_cast<float>(std::sqrt(norm2)) : 0.0f;
+        if (!Bare)
+        {
+          length[i + lane] = any ? static_cast<float>(std::sqrt(norm2)) : 0.0f;
+        }
       }
     }
   }
+  return all;
 }
 
 /**
@@ -756,12 +813,9 @@ HWY_NOINLINE void MetricsOfDirections(
 {
   const NoiseParameters& p = setup.Parameters;
   const EigenvalueRange range = VectorEigenvalues(p, N);
+  const double surfaceAcross = SurfaceEigenvalues(p).Across;
   const V zero = Const(0.0f);
   const V one = Const(1.0f);
-  const V along = Const(static_cast<float>(range.Along) - 1.0f);
-  const V across = Const(static_cast<float>(range.Across) - 1.0f);
-  const V surfaceAcross = Const(static_cast<float>(SurfaceEigenvalues(p).Across) - 1.0f);
-  const V normal = Const(static_cast<float>(SurfaceNormalEigenvalue) - 1.0f);
   for (std::size_t i = 0; i < count; i += Lanes)
   {
     const V u0 = Load(block.U[0] + i);
@@ -780,21 +834,22 @@ HWY_NOINLINE void MetricsOfDirections(
     }
     strength = hn::IfThenElseZero(there, strength);
     hn::StoreU(hn::IfThenElse(there, u0, one), DF(), block.U[0] + i);
-    hn::StoreU(hn::MulAdd(strength, along, one), DF(), block.Along + i);
+    hn::StoreU(AtStrength(range.Along, strength), DF(), block.Along + i);
     hn::StoreU(hn::IfThenElseZero(there, one), DF(), block.Sense + i);
     if (!setup.Biaxial)
     {
-      hn::StoreU(hn::MulAdd(strength, across, one), DF(), block.Across + i);
+      hn::StoreU(AtStrength(range.Across, strength), DF(), block.Across + i);
       continue;
     }
     const V m2 = hn::MulAdd(Load(block.M[0] + i), Load(block.M[0] + i),
       hn::MulAdd(Load(block.M[1] + i), Load(block.M[1] + i),
         hn::Mul(Load(block.M[2] + i), Load(block.M[2] + i))));
     const auto onSurface = hn::Gt(m2, Const(0.5f));
-    hn::StoreU(hn::MulAdd(strength, hn::IfThenElse(onSurface, surfaceAcross, across), one), DF(),
+    const V across = AtStrength(range.Across, strength);
+    hn::StoreU(hn::IfThenElse(onSurface, AtStrength(surfaceAcross, strength), across), DF(),
       block.Across + i);
-    hn::StoreU(
-      hn::MulAdd(strength, hn::IfThenElse(onSurface, normal, across), one), DF(), block.Second + i);
+    hn::StoreU(hn::IfThenElse(onSurface, AtStrength(SurfaceNormalEigenvalue, strength), across),
+      DF(), block.Second + i);
   }
 }
 
@@ -904,7 +959,7 @@ void Directions(const NoiseSetup& setup, const Field& field, std::size_t first, 
 {
   if (field.Vectors)
   {
-    UnitVectors<N>(field.Vectors->Read(first, count, block.Tuples), count, unit, block.Length);
+    UnitVectors<N, true>(field.Vectors->Read(first, count, block.Tuples), count, unit);
     return;
   }
   const float* tuples = field.Tensors->Read(first, count, block.Tuples);
@@ -919,21 +974,26 @@ void Directions(const NoiseSetup& setup, const Field& field, std::size_t first, 
   }
 }
 
-/// Axes and eigenvalues of a block, once its bend is known.
+/// Axes and eigenvalues of a block, once its bend is known. True: all have a direction and the same
+/// strength, and none of their eigenvalues are written.
 template <int N>
-void Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t count,
+bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t count,
   MetricBlock& block)
 {
   if (field.Tensors)
   {
     MetricsOfTensors<N>(setup, field.Tensors->Read(first, count, block.Tuples), count, block);
     PadTail(block, count);
-    return;
+    return false;
+  }
+  float* const unit[3] = { block.U[0], block.U[1], block.U[2] };
+  const float* vectors = field.Vectors->Read(first, count, block.Tuples);
+  if (setup.Uniform && UnitVectors<N, true>(vectors, count, unit))
+  {
+    return true;
   }
   float* const low[2] = { block.ULow[0], block.ULow[1] };
-  const float* vectors = field.Vectors->Read(first, count, block.Tuples);
-  UnitVectors<N>(
-    vectors, count, { block.U[0], block.U[1], block.U[2] }, block.Length, N == 2 ? low : nullptr);
+  UnitVectors<N, false>(vectors, count, unit, block.Length, low);
   if (field.Normals)
   {
     const float* normals = field.Normals->Read(first, count, block.Tuples + 3 * BlockRoom);
@@ -941,12 +1001,18 @@ void Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
   }
   MetricsOfDirections<N>(setup, block, count);
   PadTail(block, count);
+  return false;
 }
 
 /// Scales, masks, counts and hands out the noise of a block.
-void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t count, float* noise,
-  EvaluationCounts& counts)
+void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t count, bool uniform,
+  float* noise, EvaluationCounts& counts)
 {
+  if (uniform)
+  {
+    std::copy(block.Noise, block.Noise + count, noise);
+    return;
+  }
   const auto threshold = static_cast<float>(setup.Parameters.MaskThreshold);
   V senses = hn::Zero(DF());
   HWY_ALIGN float sense[Lanes];
@@ -987,8 +1053,8 @@ template <int N>
 HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octave,
   const double* positions, std::size_t count, MetricBlock& block)
 {
-  HWY_ALIGN double tail[3 * Lanes] = {};
   constexpr std::size_t half = hn::MaxLanes(DD());
+  HWY_ALIGN double tail[3 * half] = {};
   const bool oblique = setup.Parameters.Grid == Lattice::Simplicial;
   const VD scale = hn::Set(DD(), octave.CellsPerUnit);
   // Adding this leaves the integer, modulo 2^32, in the low bits.
@@ -1004,9 +1070,9 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
     }
     VD p[3];
     hn::LoadInterleaved3(DD(), from, p[0], p[1], p[2]);
-    for (VD& coordinate : p)
+    for (int axis = 0; axis < N; ++axis)
     {
-      coordinate = hn::Mul(coordinate, scale);
+      p[axis] = hn::Mul(p[axis], scale);
     }
     if (oblique)
     {
@@ -1031,13 +1097,10 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
         const VD period = hn::Set(DD(), static_cast<double>(octave.Period[axis]));
         cell = hn::NegMulAdd(hn::Floor(hn::Div(cell, period)), period, cell);
       }
-      HWY_ALIGN std::uint64_t bits[half];
-      const hn::ScalableTag<std::uint64_t> d64;
-      hn::Store(hn::BitCast(d64, hn::Add(cell, toInteger)), d64, bits);
-      for (std::size_t lane = 0; lane < half; ++lane)
-      {
-        block.Cell[axis][i + lane] = static_cast<std::uint32_t>(bits[lane]);
-      }
+      const hn::Rebind<std::uint64_t, DD> d64;
+      const hn::Rebind<std::uint32_t, DD> d32;
+      hn::StoreU(hn::TruncateTo(d32, hn::BitCast(d64, hn::Add(cell, toInteger))), d32,
+        block.Cell[axis] + i);
     }
   }
   for (int axis = 0; axis < N; ++axis)
@@ -1050,7 +1113,7 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
 /// Adds one octave to samples at these positions.
 template <int N>
 void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double* positions,
-  std::size_t count, MetricBlock& block, std::uint64_t& visited)
+  std::size_t count, bool uniform, MetricBlock& block, std::uint64_t& visited)
 {
   LocatePoints<N>(setup, octave, positions, count, block);
   const auto anywhere = [&](std::size_t i, Places<N>& places) HWY_ATTR
@@ -1064,7 +1127,15 @@ void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double*
   if (setup.SingleCell)
   {
     LaneCorners<N> corners(octave);
-    AddCells<N>(setup, octave, block, count, corners, visited, anywhere);
+    AddCells<N>(setup, octave, block, count, uniform, corners, visited,
+      [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
+      {
+        anywhere(i, places);
+        for (int axis = 0; axis < N; ++axis)
+        {
+          near[axis] = PlainQuinticFade(places.Fraction[axis]);
+        }
+      });
   }
   else
   {
@@ -1092,11 +1163,13 @@ struct ImageOctave
 {
   std::vector<std::uint32_t> Column; // wrapped cell, or its distance from the first of the rows
   std::vector<float> Fraction;
+  std::vector<float> Window; // of the corner below
   std::unique_ptr<GradientRows<N>> Rows;
 
   ImageOctave(const NoiseSetup& setup, const OctaveSetup& octave, const ImageGrid& grid)
     : Column(grid.Dimensions[0] + Lanes)
     , Fraction(grid.Dimensions[0] + Lanes)
+    , Window(grid.Dimensions[0] + Lanes)
   {
     const std::int64_t samples = grid.Dimensions[0];
     std::vector<std::int64_t> cells(samples);
@@ -1120,6 +1193,10 @@ struct ImageOctave
     {
       this->Column[i] = this->Column[samples - 1];
       this->Fraction[i] = this->Fraction[samples - 1];
+    }
+    for (std::size_t i = 0; i + Lanes <= this->Window.size(); i += Lanes)
+    {
+      hn::StoreU(PlainQuinticFade(Load(this->Fraction.data() + i)), DF(), this->Window.data() + i);
     }
     if (serve)
     {
@@ -1237,7 +1314,7 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
       {
         ImageCurvature<N>(setup, grid, field, scaleX, i0, count, j, k, *block);
       }
-      Metrics<N>(setup, field, first, count, *block);
+      const bool uniform = Metrics<N>(setup, field, first, count, *block);
       if (setup.Octaves.size() > 1)
       {
         std::fill(block->Noise, block->Noise + count + Lanes, 0.0f);
@@ -1267,6 +1344,20 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
             places.Fraction[axis] = fraction[axis];
           }
         };
+        V window[N];
+        for (int axis = 1; axis < N; ++axis)
+        {
+          window[axis] = PlainQuinticFade(fraction[axis]);
+        }
+        const auto withWindow = [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
+        {
+          alongRow(i, places);
+          near[0] = Load(image.Window.data() + i0 + i);
+          for (int axis = 1; axis < N; ++axis)
+          {
+            near[axis] = window[axis];
+          }
+        };
         if (setup.Parameters.Grid == Lattice::Simplicial)
         {
           for (std::size_t i = 0; i < count; ++i)
@@ -1279,25 +1370,28 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
               block->Positions[3 * i + axis] = CellPlace(grid, axis, index, 1.0);
             }
           }
-          AddPoints<N>(setup, octave, block->Positions, count, *block, counts.VisitedCorners);
+          AddPoints<N>(
+            setup, octave, block->Positions, count, uniform, *block, counts.VisitedCorners);
         }
         else if (image.Rows)
         {
           image.Rows->MoveTo(cell[1], cell[2]);
           RowCorners<N> corners(*image.Rows);
-          AddCells<N>(setup, octave, *block, count, corners, counts.VisitedCorners, alongRow);
+          AddCells<N>(
+            setup, octave, *block, count, uniform, corners, counts.VisitedCorners, withWindow);
         }
         else if (setup.SingleCell)
         {
           LaneCorners<N> corners(octave);
-          AddCells<N>(setup, octave, *block, count, corners, counts.VisitedCorners, alongRow);
+          AddCells<N>(
+            setup, octave, *block, count, uniform, corners, counts.VisitedCorners, withWindow);
         }
         else
         {
           AddWalks<N, true>(setup, octave, *block, count, counts.VisitedCorners, alongRow);
         }
       }
-      Finish(setup, *block, count, noise + first, counts);
+      Finish(setup, *block, count, uniform, noise + first, counts);
     }
   }
   return counts;
@@ -1318,7 +1412,7 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     {
       CopyCurvature<N>(setup, field.Curvature->Read(first, count, block->Tuples), count, *block);
     }
-    Metrics<N>(setup, field, first, count, *block);
+    const bool uniform = Metrics<N>(setup, field, first, count, *block);
     if (setup.Octaves.size() > 1)
     {
       std::fill(block->Noise, block->Noise + count + Lanes, 0.0f);
@@ -1326,9 +1420,9 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     const double* place = positions.Read(first, count, block->Positions);
     for (const OctaveSetup& octave : setup.Octaves)
     {
-      AddPoints<N>(setup, octave, place, count, *block, counts.VisitedCorners);
+      AddPoints<N>(setup, octave, place, count, uniform, *block, counts.VisitedCorners);
     }
-    Finish(setup, *block, count, noise + first, counts);
+    Finish(setup, *block, count, uniform, noise + first, counts);
   }
   return counts;
 }

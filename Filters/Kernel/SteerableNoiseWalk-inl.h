@@ -19,6 +19,20 @@ struct Places
   V Fraction[N];
 };
 
+/// first, first + 1, ... (Highway 1.0 makes them lane by lane).
+HWY_INLINE VI RampInt(int first)
+{
+  HWY_ALIGN static constexpr std::int32_t steps[16] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
+    14, 15 };
+  static_assert(Lanes <= 16);
+  return hn::Add(hn::Set(DI(), first), hn::Load(DI(), steps));
+}
+
+HWY_INLINE V Ramp(float first)
+{
+  return hn::Add(Const(first), hn::ConvertTo(DF(), RampInt(0)));
+}
+
 /// Registers of samples that share their lists where they can.
 constexpr std::size_t TileRegisters = 2;
 constexpr std::size_t TileSamples = TileRegisters * Lanes;
@@ -228,7 +242,7 @@ private:
       this->Total[r] = Sums();
       this->AddGroup(group);
       const auto own = hn::RebindMask(DF(),
-        hn::Eq(hn::Iota(DI(), 0), hn::Set(DI(), static_cast<std::int32_t>(lane))));
+        hn::Eq(RampInt(0), hn::Set(DI(), static_cast<std::int32_t>(lane))));
       all.Noise = hn::IfThenElse(own, this->Total[r].Noise, all.Noise);
       all.Weight = hn::IfThenElse(own, this->Total[r].Weight, all.Weight);
       all.Variance = hn::IfThenElse(own, this->Total[r].Variance, all.Variance);
@@ -301,7 +315,7 @@ private:
     step = 0.5f * (last - first);
     for (std::size_t r = group.Begin; r < group.End; ++r)
     {
-      const V index = hn::Iota(DF(), static_cast<float>(Lanes * (r - group.Begin)));
+      const V index = Ramp(static_cast<float>(Lanes * (r - group.Begin)));
       const V linear = hn::MulAdd(index, Const(step * lambda), Const(first));
       const V rest = hn::Sub(get(r), linear);
       rest2[r] = hn::MulAdd(rest, rest, rest2[r]);
@@ -558,7 +572,7 @@ private:
           this->AddRows(group, rowY, rowZ, rows, list);
           rows = 0;
         }
-        hn::StoreU(hn::Iota(DI(), y), DI(), rowY + rows);
+        hn::StoreU(RampInt(y), DI(), rowY + rows);
         hn::StoreU(hn::Set(DI(), z), DI(), rowZ + rows);
         rows += static_cast<std::size_t>(std::min(static_cast<int>(Lanes), lastY - y + 1));
       }
@@ -580,7 +594,7 @@ private:
         if (this->Params.AnisotropicWeight)
         {
           const float from = static_cast<float>(z) - group.Place[2] + this->Setup.JitterMiddle;
-          this->Narrow(axisZ, hn::Iota(DF(), from), low, high);
+          this->Narrow(axisZ, Ramp(from), low, high);
         }
         this->GetRange(group, 1, axisY, low, high, first, last);
         last = hn::IfThenElse(hn::Gt(low, high), Const(-1e9f), last);
@@ -624,7 +638,7 @@ private:
             this->AddCorners(group, list);
             list.Count = 0;
           }
-          hn::StoreU(hn::Iota(DI(), x), DI(), list.Index[0] + list.Count);
+          hn::StoreU(RampInt(x), DI(), list.Index[0] + list.Count);
           hn::StoreU(hn::Set(DI(), rowY[i + lane]), DI(), list.Index[1] + list.Count);
           if constexpr (N == 3)
           {

@@ -167,6 +167,7 @@ public:
     , Params(setup.Parameters)
     , Octave(octave)
     , InverseReach(Const(1.0f / (Params.Quality + 1)))
+    , GradientPower(Const(static_cast<float>(GradientVariance(Params.Gradients, N))))
   {
   }
 
@@ -1162,9 +1163,8 @@ private:
     sums.Noise = hn::MulAdd(amplified, Dot(g, Gv), sums.Noise);
     if (this->Params.Normalize == Normalization::UnitVariance)
     {
-      const auto variance = static_cast<float>(GradientVariance(this->Params.Gradients, N));
       sums.Variance = hn::MulAdd(
-        hn::Mul(hn::Mul(weight, weight), Const(variance)), Dot(Gv, Gv), sums.Variance);
+        hn::Mul(hn::Mul(weight, weight), this->GradientPower), Dot(Gv, Gv), sums.Variance);
     }
     else
     {
@@ -1193,6 +1193,8 @@ private:
   const NoiseParameters& Params;
   const OctaveSetup& Octave;
   V InverseReach;
+  /// Variance of a gradient's component.
+  V GradientPower;
   std::size_t Count = 0;
   std::uint64_t Visited = 0;
   Frame<N> F[TileRegisters];

@@ -1,6 +1,9 @@
 """What the plugin's tests share: the plugin itself, checks that count, and arrays as numpy."""
+import glob
 import os
+import subprocess
 import sys
+import tempfile
 
 import numpy
 from paraview import servermanager, simple
@@ -55,6 +58,42 @@ def array(dataset, name="SteerableNoise"):
         if found:
             return numpy.array(dataset_adapter.vtkDataArrayToVTKArray(found))
     return None
+
+
+def compare_ranks(script, pvbatch, mpi, digits):
+    """
+    Runs a script, which saves rows of x, y, z, value, on one rank and on three; yields each dataset's
+    name, how many samples every one of the three ranks holds and the largest difference. Places are the
+    same if they agree to so many digits; of several values at one place the nearest counts.
+    """
+    # pvpython is an MPI process of its own: its variables would make mpiexec refuse to start.
+    environment = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_"))}
+    script = os.path.join(SOURCE, "Testing", "Plugin", script)
+    with tempfile.TemporaryDirectory() as folder:
+        for ranks in (1, 3):
+            run = subprocess.run(
+                mpi + ["-n", str(ranks), pvbatch, "--symmetric", script, folder],
+                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True, timeout=280,
+                env=environment)
+            if run.returncode != 0 or run.stdout.count("done") != ranks:
+                print(run.stdout)
+            check(run.returncode == 0, "%d ranks end well" % ranks)
+            check("ERR|" not in run.stdout, "%d ranks run without an error" % ranks)
+        for name in sorted({os.path.basename(f).split(".")[0] for f in glob.glob(folder + "/*.npy")}):
+            one, three = [
+                [numpy.load(f) for f in sorted(glob.glob("%s/%s.%d.*.npy" % (folder, name, ranks)))]
+                for ranks in (1, 3)]
+            sizes = [len(rows) for rows in three]
+            place = lambda row: tuple(numpy.round(row[:3], digits) + 0.0)
+            values = {}
+            for row in numpy.concatenate(one):
+                values.setdefault(place(row), []).append(row[3])
+            found = [(row[3], values.get(place(row))) for row in numpy.concatenate(three)]
+            worst = max(min(abs(value - f) for f in near) for value, near in found if near)
+            print("%-20s ranks hold %s, largest difference %g" % (name, sizes, worst))
+            check(all(near for _, near in found) and sum(sizes) >= sum(len(rows) for rows in one),
+                  name + ": every place is there")
+            yield name, sizes, worst
 
 
 class Messages:

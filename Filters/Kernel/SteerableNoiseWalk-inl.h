@@ -7,7 +7,7 @@
  * Neighbouring samples are reached by the same corners. So they are listed once for a register of
  * samples, with a register of corners at a time: first the lattice rows, then the corners on them, then
  * those that really are in reach with their gradients. After that the samples take them one by one.
- * Samples that differ too much, or lie apart, are listed for one at a time.
+ * Samples that differ too much, or lie apart, have rows in common only and go to their own corners.
  */
 
 /// Where the samples of a register are in the lattice of an octave: cells as the hash takes them, and
@@ -56,6 +56,35 @@ struct CornerList
   HWY_ALIGN float Jitter[N][ListSize];
   HWY_ALIGN float Travel[ListSize];
   HWY_ALIGN float Amplitude[ListSize];
+};
+
+/// The same of a corner for the lanes of a register.
+template <int N>
+struct Corner
+{
+  V Offset[N];
+  V Gradient[N];
+  V FromRow[N];
+  V RowWindow;
+  V Jitter[N];
+  V Travel;
+  V Amplitude;
+
+  WALK_INLINE Corner() {}
+  /// One corner of a list for all lanes.
+  WALK_INLINE Corner(const CornerList<N>& list, std::size_t i)
+    : RowWindow(Const(list.RowWindow[i]))
+    , Travel(Const(list.Travel[i]))
+    , Amplitude(Const(list.Amplitude[i]))
+  {
+    for (int axis = 0; axis < N; ++axis)
+    {
+      this->Offset[axis] = Const(list.Offset[axis][i]);
+      this->Gradient[axis] = Const(list.Gradient[axis][i]);
+      this->FromRow[axis] = Const(list.FromRow[axis][i]);
+      this->Jitter[axis] = Const(list.Jitter[axis][i]);
+    }
+  }
 };
 
 /**
@@ -136,24 +165,69 @@ struct Group
       2.0f / std::max(1.0f, static_cast<float>(Lanes * (this->End - this->Begin)) - 1.0f);
   }
   float GetLength() const { return this->HalfLength + this->AlongReach; }
-  float GetLargestWidth() const { return this->HalfWidth + this->GetMore(this->GetLength()); }
-  float GetMore(float s) const
+  float GetLargestWidth() const
   {
-    return this->Across[0] + s * (this->Across[1] + s * this->Across[2]);
+    const float s = this->GetLength();
+    return this->HalfWidth + this->Across[0] + s * (this->Across[1] + s * this->Across[2]);
   }
-  /// Half-width of the surflet at |s| = `distance` and farther; negative beyond its end.
-  WALK_INLINE V GetTaper(V distance) const
+};
+
+/// A quadratic in s.
+WALK_INLINE V Quadratic(const V (&coefficients)[3], V s)
+{
+  return hn::MulAdd(hn::MulAdd(coefficients[2], s, coefficients[1]), s, coefficients[0]);
+}
+
+/// Half-width of a surflet at |s| = `distance` and farther; negative beyond its end.
+WALK_INLINE V GetTaper(V distance, V inverseLength, V halfWidth, bool tapers)
+{
+  const V s = hn::Mul(hn::Max(distance, hn::Zero(DF())), inverseLength);
+  const V left = hn::NegMulAdd(s, s, Const(1.0f));
+  const V taper = tapers ? hn::Sqrt(hn::Max(left, hn::Zero(DF()))) : Const(1.0f);
+  return hn::IfThenElse(
+    hn::Lt(left, hn::Zero(DF())), Const(-1e9f), hn::Mul(halfWidth, taper));
+}
+
+/// Where lattice rows are cut: the group's reach in all lanes, or that of a sample in each.
+template <int N>
+struct Reach
+{
+  V Place[N];
+  V U[N];
+  V Bend[N];
+  V BendLength;
+  V Length; // what can be ahead or behind included
+  V HalfWidth;
+  V LargestWidth;
+  V InverseLength;
+  V Spread;
+  V RowSpread;
+  V AlongReach;
+  V Across[3];
+  bool Tapers;
+
+  WALK_INLINE Reach() {}
+  WALK_INLINE explicit Reach(const Group<N>& group)
+    : BendLength(Const(group.BendLength))
+    , Length(Const(group.GetLength()))
+    , HalfWidth(Const(group.HalfWidth))
+    , LargestWidth(Const(group.GetLargestWidth()))
+    , InverseLength(Const(group.InverseLength))
+    , Spread(Const(group.Spread))
+    , RowSpread(Const(group.RowSpread))
+    , AlongReach(Const(group.AlongReach))
+    , Tapers(group.Tapers)
   {
-    const V s = hn::Mul(hn::Max(distance, hn::Zero(DF())), Const(this->InverseLength));
-    const V left = hn::NegMulAdd(s, s, Const(1.0f));
-    const V taper = this->Tapers ? hn::Sqrt(hn::Max(left, hn::Zero(DF()))) : Const(1.0f);
-    return hn::IfThenElse(
-      hn::Lt(left, hn::Zero(DF())), Const(-1e9f), hn::Mul(Const(this->HalfWidth), taper));
-  }
-  /// The same of a register of distances, with Rest or Across.
-  static WALK_INLINE V GetMore(V s, const float (&bound)[3])
-  {
-    return hn::MulAdd(hn::MulAdd(Const(bound[2]), s, Const(bound[1])), s, Const(bound[0]));
+    for (int axis = 0; axis < N; ++axis)
+    {
+      this->Place[axis] = Const(group.Place[axis]);
+      this->U[axis] = Const(group.U[axis]);
+      this->Bend[axis] = Const(group.Bend[axis]);
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      this->Across[i] = Const(group.Across[i]);
+    }
   }
 };
 
@@ -214,7 +288,7 @@ private:
     Group<N> group;
     group.Begin = begin;
     group.End = end;
-    if (Lanes > 1 && this->SetGroup(group))
+    if (this->SetGroup(group))
     {
       this->AddGroup(group);
     }
@@ -226,30 +300,8 @@ private:
     }
     else
     {
-      this->AddOneByOne(begin);
+      this->AddApart(begin);
     }
-  }
-
-  HWY_NOINLINE void AddOneByOne(std::size_t r)
-  {
-    Sums all;
-    Group<N> group;
-    group.Begin = r;
-    group.End = r + 1;
-    const std::uint64_t before = this->Visited;
-    for (std::size_t lane = 0; lane < Lanes && r * Lanes + lane < this->Count; ++lane)
-    {
-      this->SetOne(group, lane);
-      this->Total[r] = Sums();
-      this->AddGroup(group);
-      const auto own = hn::RebindMask(DF(),
-        hn::Eq(RampInt(0), hn::Set(DI(), static_cast<std::int32_t>(lane))));
-      all.Noise = hn::IfThenElse(own, this->Total[r].Noise, all.Noise);
-      all.Weight = hn::IfThenElse(own, this->Total[r].Weight, all.Weight);
-      all.Variance = hn::IfThenElse(own, this->Total[r].Variance, all.Variance);
-    }
-    this->Visited = before + (this->Visited - before) / this->GetCount(r);
-    this->Total[r] = all;
   }
 
   /// Samples of a register.
@@ -264,44 +316,60 @@ private:
     return this->Setup.Biaxial ? hn::Min(frame.Across, frame.Second) : frame.Across;
   }
 
-  /// Half axes of the surflet from the least eigenvalues; returns how far it travels.
-  WALK_INLINE float SetAxes(Group<N>& group, float along, float across) const
+  WALK_INLINE bool IsStreaks() const
   {
-    const float support = this->Setup.Support;
-    const bool streaks = Variant && this->Params.Surflet == Basis::Streaks;
-    const float rootAlong = std::sqrt(along);
-    // A little more than needed: every sample must see all its own corners, whatever rounding does.
-    constexpr float slack = 1e-3f;
-    group.HalfLength = (streaks ? 1.0f : std::sqrt(support)) / rootAlong + slack;
-    group.HalfWidth = (streaks ? support : std::sqrt(support)) / std::sqrt(across) + slack;
-    group.InverseLength = 1.0f / group.HalfLength;
-    group.Tapers = !streaks;
+    return Variant && this->Params.Surflet == Basis::Streaks;
+  }
+
+  /// How far surflets travel to either side, in half-lengths.
+  WALK_INLINE float GetTravel() const
+  {
     return Variant && this->Params.Motion
-      ? 0.5f * std::abs(static_cast<float>(this->Params.Speed)) / rootAlong
+      ? 0.5f * std::abs(static_cast<float>(this->Params.Speed))
       : 0.0f;
   }
 
-  WALK_INLINE void SetOne(Group<N>& group, std::size_t lane)
+  /// Half axes of the surflet from the least eigenvalues.
+  WALK_INLINE void SetAxes(Group<N>& group, float along, float across) const
   {
-    const std::size_t r = group.Begin;
+    const float support = this->Setup.Support;
+    const bool streaks = this->IsStreaks();
+    group.HalfLength = (streaks ? 1.0f : std::sqrt(support)) / std::sqrt(along) + Slack;
+    group.HalfWidth = (streaks ? support : std::sqrt(support)) / std::sqrt(across) + Slack;
+    group.InverseLength = 1.0f / group.HalfLength;
+    group.Tapers = !streaks;
+  }
+
+  /// The samples of a register, each with its own cell, place and reach.
+  WALK_INLINE void SetApart(Reach<N>& reach, std::size_t r)
+  {
     const Frame<N>& frame = this->F[r];
-    float bend2 = 0.0f;
+    V bend2 = hn::Zero(DF());
     for (int axis = 0; axis < N; ++axis)
     {
-      HWY_ALIGN std::uint32_t cells[Lanes];
-      hn::Store(this->P[r].Cell[axis], DU(), cells);
-      this->Cell[axis] = cells[lane];
+      this->Cell[axis] = this->P[r].Cell[axis];
       this->Shift[r][axis] = hn::Zero(DF());
-      group.Place[axis] = LaneOf(this->P[r].Fraction[axis], lane);
-      group.U[axis] = LaneOf(frame.U[axis], lane);
-      group.Bend[axis] = this->Setup.Curved ? LaneOf(frame.Bend[axis], lane) : 0.0f;
-      group.PlaceStep[axis] = group.UStep[axis] = group.BendStep[axis] = 0.0f;
-      bend2 += group.Bend[axis] * group.Bend[axis];
+      reach.Place[axis] = this->P[r].Fraction[axis];
+      reach.U[axis] = frame.U[axis];
+      reach.Bend[axis] = frame.Bend[axis];
+      bend2 = hn::MulAdd(frame.Bend[axis], frame.Bend[axis], bend2);
     }
-    group.BendLength = std::sqrt(bend2);
-    const float travel =
-      this->SetAxes(group, LaneOf(frame.Along, lane), LaneOf(this->GetLeastAcross(r), lane));
-    group.SetBounds(0.0f, 0.0f, 0.0f, travel, this->IsOblique());
+    reach.BendLength = hn::Sqrt(bend2);
+    const float support = this->Setup.Support;
+    const bool streaks = this->IsStreaks();
+    const V one = Const(1.0f);
+    const V rootInverse = hn::Div(one, hn::Sqrt(frame.Along));
+    const V length = hn::MulAdd(Const(streaks ? 1.0f : std::sqrt(support)), rootInverse, Const(Slack));
+    reach.HalfWidth = hn::Add(
+      hn::Div(Const(streaks ? support : std::sqrt(support)), hn::Sqrt(this->GetLeastAcross(r))),
+      Const(Slack));
+    reach.LargestWidth = reach.HalfWidth;
+    reach.InverseLength = hn::Div(one, length);
+    reach.AlongReach = hn::Mul(rootInverse, Const(this->GetTravel()));
+    reach.Length = hn::Add(length, reach.AlongReach);
+    reach.Spread = reach.RowSpread = hn::Zero(DF());
+    reach.Across[0] = reach.Across[1] = reach.Across[2] = hn::Zero(DF());
+    reach.Tapers = !streaks;
   }
 
   /// Splits what `get` gives for a register into its linear change and the squares of the rest.
@@ -345,7 +413,7 @@ private:
     V bend2[TileRegisters];
     for (int axis = 0; axis < N; ++axis)
     {
-      this->Cell[axis] = hn::GetLane(this->P[group.Begin].Cell[axis]);
+      this->Cell[axis] = hn::Set(DU(), hn::GetLane(this->P[group.Begin].Cell[axis]));
     }
     for (std::size_t r = group.Begin; r < group.End; ++r)
     {
@@ -362,14 +430,14 @@ private:
         if (!Aligned || axis == 0)
         {
           this->Shift[r][axis] = hn::ConvertTo(DF(),
-            hn::BitCast(DI(), hn::Sub(this->P[r].Cell[axis], hn::Set(DU(), this->Cell[axis]))));
+            hn::BitCast(DI(), hn::Sub(this->P[r].Cell[axis], this->Cell[axis])));
         }
       }
       sign[r] = hn::And(cosine, hn::BitCast(DF(), hn::Set(DU(), 0x80000000u)));
       place2[r] = direction2[r] = bend2[r] = hn::Zero(DF());
     }
-    const float travel = this->SetAxes(group, LeastLane(along), LeastLane(across));
-    float length2 = 0.0f;
+    this->SetAxes(group, LeastLane(along), LeastLane(across));
+    const float travel = this->GetTravel() / std::sqrt(LeastLane(along));
     for (int axis = 0; axis < N; ++axis)
     {
       SplitLinear(group, group.U[axis], group.UStep[axis], direction2,
@@ -379,7 +447,6 @@ private:
       {
         SplitLinear(group, group.Bend[axis], group.BendStep[axis], bend2,
           [&](std::size_t r) HWY_ATTR { return this->F[r].Bend[axis]; });
-        length2 += group.Bend[axis] * group.Bend[axis];
       }
       if (Aligned && axis > 0)
       {
@@ -409,9 +476,30 @@ private:
       std::copy(step, step + N, group.PlaceStep);
       place *= 2.0f;
     }
+    // The middle of unit vectors is shorter than 1, and that of the bends not quite across it.
+    float norm2 = 0.0f;
+    float parallel = 0.0f;
+    for (int axis = 0; axis < N; ++axis)
+    {
+      norm2 += group.U[axis] * group.U[axis];
+    }
+    const float norm = std::sqrt(norm2);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      group.U[axis] /= norm;
+      parallel += group.Bend[axis] * group.U[axis];
+    }
+    float length2 = 0.0f;
+    for (int axis = 0; axis < N; ++axis)
+    {
+      group.Bend[axis] -= parallel * group.U[axis];
+      length2 += group.Bend[axis] * group.Bend[axis];
+    }
     group.BendLength = std::sqrt(length2);
-    group.SetBounds(place, GetLargest(group, direction2),
-      this->Setup.Curved ? GetLargest(group, bend2) : 0.0f, travel, this->IsOblique());
+    const float direction = GetLargest(group, direction2) + std::abs(1.0f - norm);
+    const float bend =
+      this->Setup.Curved ? GetLargest(group, bend2) + std::abs(parallel) : 0.0f;
+    group.SetBounds(place, direction, bend, travel, this->IsOblique());
     return group.GetLargestWidth() - group.HalfWidth < LargestSpread;
   }
 
@@ -446,59 +534,65 @@ private:
     }
   }
 
-  /// How an index of the lattice changes along the group's axis, and with it across.
+  /// How an index of the lattice changes along the flow, and with it across.
   struct IndexAxis
   {
-    float Along;
-    float InverseAlong;
-    float Bend;
-    float Width;
-    float BoxLow;
-    float BoxHigh;
+    V Along;
+    V InverseAlong;
+    V Bend;
+    V Width;
+    V BoxLow;
+    V BoxHigh;
   };
 
-  WALK_INLINE IndexAxis GetIndexAxis(const Group<N>& group, int axis) const
+  /// 1 / v, or that of something small.
+  static WALK_INLINE V Inverse(V v)
+  {
+    return hn::Div(Const(1.0f), hn::CopySign(hn::Max(hn::Abs(v), Const(1e-6f)), v));
+  }
+
+  WALK_INLINE IndexAxis GetIndexAxis(const Reach<N>& reach, int axis) const
   {
     IndexAxis result;
-    result.Along = group.U[axis];
-    result.Bend = group.Bend[axis];
+    result.Along = reach.U[axis];
+    result.Bend = reach.Bend[axis];
     float w2 = 1.0f;
     if (this->IsOblique())
     {
-      result.Along = result.Bend = w2 = 0.0f;
+      result.Along = result.Bend = hn::Zero(DF());
+      w2 = 0.0f;
+      for (int i = 0; i < N; ++i)
+      {
+        const auto w = static_cast<float>(this->Setup.LatticeIndices[axis][i]);
+        result.Along = hn::MulAdd(Const(w), reach.U[i], result.Along);
+        result.Bend = hn::MulAdd(Const(w), reach.Bend[i], result.Bend);
+        w2 += w * w;
+      }
     }
-    for (int i = 0; i < N && this->IsOblique(); ++i)
-    {
-      const auto w = static_cast<float>(this->Setup.LatticeIndices[axis][i]);
-      result.Along += w * group.U[i];
-      result.Bend += w * group.Bend[i];
-      w2 += w * w;
-    }
-    const float across2 = std::max(0.0f, w2 - result.Along * result.Along);
-    result.Width = (group.GetLargestWidth() + this->GetLooseness(group)) * std::sqrt(across2) +
-      this->Setup.JitterRadius * std::abs(result.Along);
-    result.InverseAlong =
-      1.0f / std::copysign(std::max(std::abs(result.Along), 1e-6f), result.Along);
+    const V across = hn::Sqrt(
+      hn::Max(hn::NegMulAdd(result.Along, result.Along, Const(w2)), hn::Zero(DF())));
+    result.Width = hn::MulAdd(hn::Add(reach.LargestWidth, this->GetLooseness(reach)), across,
+      hn::Mul(Const(this->Setup.JitterRadius), hn::Abs(result.Along)));
+    result.InverseAlong = Inverse(result.Along);
     // The window is a box of places; oblique indices need √3 times as many to cover it.
-    const float reach =
-      this->Setup.WindowReach * (this->IsOblique() ? 1.75f : 1.0f) +
-      group.Spread * std::sqrt(w2);
-    result.BoxLow = group.Place[axis] - reach - this->Setup.JitterUp;
-    result.BoxHigh = group.Place[axis] + reach + this->Setup.JitterDown;
+    const V box = hn::MulAdd(reach.Spread, Const(std::sqrt(w2)),
+      Const(this->Setup.WindowReach * (this->IsOblique() ? 1.75f : 1.0f)));
+    result.BoxLow = hn::Sub(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterUp)));
+    result.BoxHigh = hn::Add(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterDown)));
     return result;
   }
 
   /// How much farther across a corner can stand before jitter moves it, the change of its sag included.
-  WALK_INLINE float GetLooseness(const Group<N>& group) const
+  WALK_INLINE V GetLooseness(const Reach<N>& reach) const
   {
-    const float radius = this->Setup.JitterRadius;
-    return radius * (1.0f + group.BendLength * (group.GetLength() + radius));
+    const V radius = Const(this->Setup.JitterRadius);
+    return hn::MulAdd(hn::Mul(radius, reach.BendLength), hn::Add(reach.Length, radius), radius);
   }
 
   /// s²/2 on an interval, times a factor: its least and greatest value.
-  static WALK_INLINE void GetSag(float factor, V low, V high, V& least, V& greatest)
+  static WALK_INLINE void GetSag(V factor, V low, V high, V& least, V& greatest)
   {
-    const V half = Const(0.5f * factor);
+    const V half = hn::Mul(Const(0.5f), factor);
     const V first = hn::Mul(hn::Mul(low, low), half);
     const V last = hn::Mul(hn::Mul(high, high), half);
     const V turn = hn::IfThenElse(
@@ -507,9 +601,12 @@ private:
     greatest = hn::Max(hn::Max(first, last), turn);
   }
 
-  /// Leaves of [low, high] the s at which the index can be `offset` from the group's place.
-  WALK_INLINE void Narrow(const IndexAxis& axis, V offset, V& low, V& high) const
+  /// Leaves of [low, high] the s at which the index of that axis can be `index`.
+  WALK_INLINE void Narrow(
+    const Reach<N>& reach, int number, const IndexAxis& axis, V index, V& low, V& high) const
   {
+    const V offset =
+      hn::Sub(index, hn::Sub(reach.Place[number], Const(this->Setup.JitterMiddle)));
     V least = hn::Zero(DF());
     V greatest = hn::Zero(DF());
     for (int round = 0; round < (this->Setup.Curved ? 2 : 1); ++round)
@@ -518,21 +615,19 @@ private:
       {
         GetSag(axis.Bend, low, high, least, greatest);
       }
-      const V a = hn::Mul(
-        hn::Sub(hn::Sub(offset, Const(axis.Width)), greatest), Const(axis.InverseAlong));
-      const V b =
-        hn::Mul(hn::Sub(hn::Add(offset, Const(axis.Width)), least), Const(axis.InverseAlong));
+      const V a = hn::Mul(hn::Sub(hn::Sub(offset, axis.Width), greatest), axis.InverseAlong);
+      const V b = hn::Mul(hn::Sub(hn::Add(offset, axis.Width), least), axis.InverseAlong);
       low = hn::Max(low, hn::Min(a, b));
       high = hn::Min(high, hn::Max(a, b));
     }
   }
 
-  /// Indices that the reach has for s in [low, high].
-  WALK_INLINE void GetRange(
-    const Group<N>& group, int number, const IndexAxis& axis, V low, V high, V& first, V& last) const
+  /// Indices that the reach has for s in [low, high]; none if that is empty.
+  WALK_INLINE void GetRange(const Reach<N>& reach, int number, const IndexAxis& axis, V low, V high,
+    V& first, V& last) const
   {
-    first = Const(axis.BoxLow);
-    last = Const(axis.BoxHigh);
+    first = axis.BoxLow;
+    last = axis.BoxHigh;
     if (this->Params.AnisotropicWeight)
     {
       V least = hn::Zero(DF());
@@ -541,15 +636,14 @@ private:
       {
         GetSag(axis.Bend, low, high, least, greatest);
       }
-      const V a = hn::Mul(low, Const(axis.Along));
-      const V b = hn::Mul(high, Const(axis.Along));
-      const V place = Const(group.Place[number] - this->Setup.JitterMiddle);
-      const V width = Const(axis.Width);
-      first = hn::Max(first, hn::Add(place, hn::Sub(hn::Add(hn::Min(a, b), least), width)));
-      last = hn::Min(last, hn::Add(place, hn::Add(hn::Add(hn::Max(a, b), greatest), width)));
+      const V a = hn::Mul(low, axis.Along);
+      const V b = hn::Mul(high, axis.Along);
+      const V place = hn::Sub(reach.Place[number], Const(this->Setup.JitterMiddle));
+      first = hn::Max(first, hn::Add(place, hn::Sub(hn::Add(hn::Min(a, b), least), axis.Width)));
+      last = hn::Min(last, hn::Add(place, hn::Add(hn::Add(hn::Max(a, b), greatest), axis.Width)));
     }
     first = hn::Ceil(first);
-    last = hn::Floor(last);
+    last = hn::IfThenElse(hn::Gt(low, high), Const(-1e9f), hn::Floor(last));
   }
 
   HWY_NOINLINE void AddGroup(const Group<N>& group)
@@ -560,8 +654,9 @@ private:
     HWY_ALIGN std::int32_t lasts[Lanes];
     std::size_t rows = 0;
     CornerList<N> list;
-    const IndexAxis axisY = this->GetIndexAxis(group, 1);
-    const V length = Const(group.GetLength() + this->Setup.JitterRadius);
+    const Reach<N> reach(group);
+    const IndexAxis axisY = this->GetIndexAxis(reach, 1);
+    const V length = hn::Add(reach.Length, Const(this->Setup.JitterRadius));
     V first;
     V last;
     const auto addRows = [&](int y, int lastY, int z) HWY_ATTR
@@ -570,7 +665,7 @@ private:
       {
         if (rows + Lanes > ListSize)
         {
-          this->AddRows(group, rowY, rowZ, rows, list);
+          this->AddRows(group, reach, rowY, rowZ, rows, list);
           rows = 0;
         }
         hn::StoreU(RampInt(y), DI(), rowY + rows);
@@ -580,13 +675,13 @@ private:
     };
     if constexpr (N == 2)
     {
-      this->GetRange(group, 1, axisY, hn::Neg(length), length, first, last);
+      this->GetRange(reach, 1, axisY, hn::Neg(length), length, first, last);
       addRows(ToCorner(hn::GetLane(first)), ToCorner(hn::GetLane(last)), 0);
     }
     else
     {
-      const IndexAxis axisZ = this->GetIndexAxis(group, 2);
-      this->GetRange(group, 2, axisZ, hn::Neg(length), length, first, last);
+      const IndexAxis axisZ = this->GetIndexAxis(reach, 2);
+      this->GetRange(reach, 2, axisZ, hn::Neg(length), length, first, last);
       const int lastZ = ToCorner(hn::GetLane(last));
       for (int z = ToCorner(hn::GetLane(first)); z <= lastZ; z += static_cast<int>(Lanes))
       {
@@ -594,11 +689,9 @@ private:
         V high = length;
         if (this->Params.AnisotropicWeight)
         {
-          const float from = static_cast<float>(z) - group.Place[2] + this->Setup.JitterMiddle;
-          this->Narrow(axisZ, Ramp(from), low, high);
+          this->Narrow(reach, 2, axisZ, Ramp(static_cast<float>(z)), low, high);
         }
-        this->GetRange(group, 1, axisY, low, high, first, last);
-        last = hn::IfThenElse(hn::Gt(low, high), Const(-1e9f), last);
+        this->GetRange(reach, 1, axisY, low, high, first, last);
         hn::Store(ToCorners(first), DI(), firsts);
         hn::Store(ToCorners(last), DI(), lasts);
         for (int i = 0; i < static_cast<int>(Lanes) && z + i <= lastZ; ++i)
@@ -607,24 +700,24 @@ private:
         }
       }
     }
-    this->AddRows(group, rowY, rowZ, rows, list);
+    this->AddRows(group, reach, rowY, rowZ, rows, list);
     this->AddCorners(group, list);
   }
 
   /// Puts the corners of these rows on the list.
-  HWY_NOINLINE void AddRows(const Group<N>& group, const std::int32_t* rowY,
-    const std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
+  HWY_NOINLINE void AddRows(const Group<N>& group, const Reach<N>& reach,
+    const std::int32_t* rowY, const std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
   {
     HWY_ALIGN std::int32_t firsts[Lanes];
     HWY_ALIGN std::int32_t lasts[Lanes];
-    const IndexAxis axis = this->GetIndexAxis(group, 0);
+    const IndexAxis axis = this->GetIndexAxis(reach, 0);
     for (std::size_t i = 0; i < rows; i += Lanes)
     {
-      V low = Const(axis.BoxLow);
-      V high = Const(axis.BoxHigh);
+      V low = axis.BoxLow;
+      V high = axis.BoxHigh;
       if (this->Params.AnisotropicWeight)
       {
-        this->CutRows(group, hn::ConvertTo(DF(), hn::LoadU(DI(), rowY + i)),
+        this->CutRows(reach, hn::ConvertTo(DF(), hn::LoadU(DI(), rowY + i)),
           hn::ConvertTo(DF(), hn::LoadU(DI(), rowZ + i)), low, high);
       }
       hn::Store(ToCorners(hn::Ceil(low)), DI(), firsts);
@@ -656,55 +749,65 @@ private:
    * Interval of a register of rows: a slab along the flow, then a tube around the parabola, whose sag
    * and width are known within a band once the slab has bounded the distance along the flow.
    */
-  WALK_INLINE void CutRows(const Group<N>& group, V rowY, V rowZ, V& low, V& high) const
+  WALK_INLINE void CutRows(const Reach<N>& reach, V rowY, V rowZ, V& low, V& high) const
   {
     V row[N];
     V index[N];
-    index[0] = Const(-group.Place[0]);
-    index[1] = hn::Sub(rowY, Const(group.Place[1]));
+    index[0] = hn::Neg(reach.Place[0]);
+    index[1] = hn::Sub(rowY, reach.Place[1]);
     if constexpr (N == 3)
     {
-      index[2] = hn::Sub(rowZ, Const(group.Place[2]));
+      index[2] = hn::Sub(rowZ, reach.Place[2]);
     }
     this->ToPlace(index, row);
-    float se = 0.0f;
+    // s and the part t across the flow at the beginning of the row, and their changes along it.
     V s0 = hn::Zero(DF());
+    V se = this->IsOblique() ? hn::Zero(DF()) : reach.U[0];
     for (int i = 0; i < N; ++i)
     {
-      const auto component = static_cast<float>(this->Setup.LatticeSteps[i][0]);
-      se += component * group.U[i];
       row[i] = hn::Add(row[i], Const(this->Setup.JitterMiddle));
-      s0 = hn::MulAdd(row[i], Const(group.U[i]), s0);
+      s0 = hn::MulAdd(row[i], reach.U[i], s0);
+      if (this->IsOblique())
+      {
+        se = hn::MulAdd(
+          Const(static_cast<float>(this->Setup.LatticeSteps[i][0])), reach.U[i], se);
+      }
     }
-    const float radius = this->Setup.JitterRadius;
-    const V inverse = Const(1.0f / std::copysign(std::max(std::abs(se), 1e-6f), se));
+    V t0[N];
+    V te[N];
+    for (int i = 0; i < N; ++i)
+    {
+      t0[i] = hn::NegMulAdd(s0, reach.U[i], row[i]);
+      te[i] = hn::NegMulAdd(
+        se, reach.U[i], Const(static_cast<float>(this->Setup.LatticeSteps[i][0])));
+    }
+    const V inverse = Inverse(se);
     const V middle = hn::Neg(hn::Mul(s0, inverse));
-    const V half = hn::Abs(hn::Mul(Const(group.GetLength() + radius), inverse));
+    const V half = hn::Abs(hn::Mul(hn::Add(reach.Length, Const(this->Setup.JitterRadius)), inverse));
     low = hn::Max(low, hn::Sub(middle, half));
     high = hn::Min(high, hn::Add(middle, half));
-
     for (int round = 0; round < (this->Setup.Curved ? 2 : 1); ++round)
     {
-      this->CutByTube(group, row, s0, se, low, high);
+      this->CutByTube(reach, s0, se, t0, te, low, high);
     }
-    low = hn::Sub(low, Const(group.RowSpread));
-    high = hn::Add(high, Const(group.RowSpread));
+    low = hn::Sub(low, reach.RowSpread);
+    high = hn::Add(high, reach.RowSpread);
   }
 
   /// What a tube around the parabola leaves of [low, high], whose s bound its sag and its width.
-  WALK_INLINE void CutByTube(
-    const Group<N>& group, const V (&row)[N], V s0, float se, V& low, V& high) const
+  WALK_INLINE void CutByTube(const Reach<N>& reach, V s0, V se, const V (&t0)[N], const V (&te)[N],
+    V& low, V& high) const
   {
-    const float radius = this->Setup.JitterRadius;
-    const V first = hn::MulAdd(low, Const(se), s0);
-    const V last = hn::MulAdd(high, Const(se), s0);
+    const V radius = Const(this->Setup.JitterRadius);
+    const V first = hn::MulAdd(low, se, s0);
+    const V last = hn::MulAdd(high, se, s0);
     const V most = hn::Max(hn::Abs(first), hn::Abs(last));
     const V least = hn::IfThenElseZero(hn::Ge(hn::Mul(first, last), hn::Zero(DF())),
       hn::Min(hn::Abs(first), hn::Abs(last)));
-    V width = hn::Add(
-      group.GetTaper(hn::Sub(least, Const(radius + group.AlongReach))),
-      hn::Add(Group<N>::GetMore(hn::Add(most, Const(radius)), group.Across),
-        Const(this->GetLooseness(group))));
+    V width = GetTaper(hn::Sub(least, hn::Add(radius, reach.AlongReach)), reach.InverseLength,
+      reach.HalfWidth, reach.Tapers);
+    width = hn::Add(width,
+      hn::Add(Quadratic(reach.Across, hn::Add(most, radius)), this->GetLooseness(reach)));
     V sag = hn::Zero(DF());
     if (this->Setup.Curved)
     {
@@ -712,25 +815,22 @@ private:
       const V most2 = hn::Mul(most, most);
       const V least2 = hn::Mul(least, least);
       sag = hn::Mul(quarter, hn::Add(most2, least2));
-      const V band = hn::Mul(quarter, hn::Sub(most2, least2));
-      width = hn::MulAdd(band, Const(group.BendLength), width);
+      width = hn::MulAdd(hn::Mul(quarter, hn::Sub(most2, least2)), reach.BendLength, width);
     }
-    // |t0 + x te| < width with t the part across the flow, t0 shifted by the sag.
+    // |t0 + x te - sag bend| < width.
+    V A = hn::Zero(DF());
     V B = hn::Zero(DF());
     V C = hn::Neg(hn::Mul(width, hn::Max(width, hn::Zero(DF()))));
-    float A = 0.0f;
     for (int i = 0; i < N; ++i)
     {
-      const V t0 = hn::NegMulAdd(
-        sag, Const(group.Bend[i]), hn::NegMulAdd(s0, Const(group.U[i]), row[i]));
-      const float te = static_cast<float>(this->Setup.LatticeSteps[i][0]) - se * group.U[i];
-      B = hn::MulAdd(t0, Const(te), B);
-      C = hn::MulAdd(t0, t0, C);
-      A += te * te;
+      const V t = hn::NegMulAdd(sag, reach.Bend[i], t0[i]);
+      A = hn::MulAdd(te[i], te[i], A);
+      B = hn::MulAdd(t, te[i], B);
+      C = hn::MulAdd(t, t, C);
     }
-    A = std::max(A, 1e-6f);
-    const V discriminant = hn::NegMulAdd(Const(A), C, hn::Mul(B, B));
-    const V inverseA = Const(1.0f / A);
+    A = hn::Max(A, Const(1e-6f));
+    const V discriminant = hn::NegMulAdd(A, C, hn::Mul(B, B));
+    const V inverseA = hn::Div(Const(1.0f), A);
     const V root = hn::Mul(hn::Sqrt(hn::Max(discriminant, hn::Zero(DF()))), inverseA);
     const V center = hn::Neg(hn::Mul(B, inverseA));
     const V slack = Const(1e-3f);
@@ -739,15 +839,89 @@ private:
     high = hn::IfThenElse(hn::Lt(discriminant, hn::Zero(DF())), Const(-1e9f), high);
   }
 
+  // ---- samples apart ----------------------------------------------------------------------------
+
+  /// Every sample of a register goes along the same rows, counted from its own cell, by itself.
+  HWY_NOINLINE void AddApart(std::size_t r)
+  {
+    Reach<N> reach;
+    this->SetApart(reach, r);
+    const IndexAxis axisY = this->GetIndexAxis(reach, 1);
+    const V length = hn::Add(reach.Length, Const(this->Setup.JitterRadius));
+    V first;
+    V last;
+    if constexpr (N == 2)
+    {
+      this->GetRange(reach, 1, axisY, hn::Neg(length), length, first, last);
+      this->AddRowsApart(reach, r, first, last, 0);
+    }
+    else
+    {
+      const IndexAxis axisZ = this->GetIndexAxis(reach, 2);
+      this->GetRange(reach, 2, axisZ, hn::Neg(length), length, first, last);
+      const int lastZ = ToCorner(GreatestLane(last));
+      for (int z = ToCorner(LeastLane(first)); z <= lastZ; ++z)
+      {
+        V low = hn::Neg(length);
+        V high = length;
+        if (this->Params.AnisotropicWeight)
+        {
+          this->Narrow(reach, 2, axisZ, Const(static_cast<float>(z)), low, high);
+        }
+        this->GetRange(reach, 1, axisY, low, high, first, last);
+        this->AddRowsApart(reach, r, first, last, z);
+      }
+    }
+  }
+
+  /// The corners of the rows from the least of `first` to the greatest of `last`.
+  WALK_INLINE void AddRowsApart(const Reach<N>& reach, std::size_t r, V first, V last, int z)
+  {
+    const Sample sample{ this->F[r], this->P[r].Fraction, this->Shift[r], this->CrossFraction[r] };
+    const IndexAxis axisX = this->GetIndexAxis(reach, 0);
+    const auto none = hn::Gt(first, last);
+    const int lastY = ToCorner(GreatestLane(hn::IfThenElse(none, Const(-1e9f), last)));
+    for (int y = ToCorner(LeastLane(hn::IfThenElse(none, Const(1e9f), first))); y <= lastY; ++y)
+    {
+      V low = axisX.BoxLow;
+      V high = axisX.BoxHigh;
+      if (this->Params.AnisotropicWeight)
+      {
+        this->CutRows(reach, Const(static_cast<float>(y)), Const(static_cast<float>(z)), low, high);
+      }
+      const VI begin = ToCorners(hn::Ceil(low));
+      const VI steps = hn::Sub(ToCorners(hn::Floor(high)), begin);
+      const auto most = static_cast<int>(GreatestLane(hn::ConvertTo(DF(), steps)));
+      for (int step = 0; step <= most; ++step)
+      {
+        // A sample that has no corner here any more is too far from this one.
+        VI corner[N];
+        corner[0] = hn::Add(begin, hn::Set(DI(), step));
+        corner[1] = hn::Set(DI(), y);
+        if constexpr (N == 3)
+        {
+          corner[2] = hn::Set(DI(), z);
+        }
+        V offset[N];
+        for (int axis = 0; axis < N; ++axis)
+        {
+          offset[axis] = hn::ConvertTo(DF(), corner[axis]);
+        }
+        this->AddSurflet(
+          sample, this->Describe(offset, this->HashCorners(corner)), this->Total[r]);
+        this->Visited += this->GetCount(r);
+      }
+    }
+  }
+
   // ---- listed corners ---------------------------------------------------------------------------
 
-  WALK_INLINE VU HashCorners(const CornerList<N>& list, std::size_t i) const
+  WALK_INLINE VU HashCorners(const VI (&corner)[N]) const
   {
     VU hash = hn::Set(DU(), this->Octave.Seed);
     for (int axis = 0; axis < N; ++axis)
     {
-      VU index = hn::Add(hn::Set(DU(), this->Cell[axis]),
-        hn::BitCast(DU(), hn::Load(DI(), list.Index[axis] + i)));
+      VU index = hn::Add(this->Cell[axis], hn::BitCast(DU(), corner[axis]));
       if (this->Octave.Period[axis] > 0)
       {
         index = WrapIndex(index, this->Octave.Period[axis]);
@@ -808,7 +982,8 @@ private:
       tStep = hn::MulAdd(t, step, tStep);
       step2 = hn::MulAdd(step, step, step2);
     }
-    const V more = Group<N>::GetMore(hn::Abs(s), group.Rest);
+    const V rest[3] = { Const(group.Rest[0]), Const(group.Rest[1]), Const(group.Rest[2]) };
+    const V more = Quadratic(rest, hn::Abs(s));
     // |t - λ step| at the λ where it is least, of those that a register has.
     const V best = hn::Div(tStep, step2);
     for (std::size_t r = group.Begin; r < group.End; ++r)
@@ -822,7 +997,9 @@ private:
       const V distance = hn::Abs(hn::MulAdd(sStep, Const(first + half), s));
       const V shortest =
         hn::Sub(distance, hn::MulAdd(hn::Abs(sStep), Const(half), Const(group.AlongRest)));
-      const V width = hn::Add(more, group.GetTaper(shortest));
+      const V width = hn::Add(more,
+        GetTaper(
+          shortest, Const(group.InverseLength), Const(group.HalfWidth), group.Tapers));
       const auto inside = hn::Le(least, hn::MulAdd(width, width, Const(1e-5f)));
       bits[r] |=
         ToBits(hn::And(listed, hn::And(inside, hn::Gt(width, hn::Zero(DF()))))) << firstBit;
@@ -841,74 +1018,89 @@ private:
     return bits;
   }
 
-  WALK_INLINE void Describe(
-    const V (&offset)[N], VU hash, CornerList<N>& list, std::size_t i) const
+  WALK_INLINE Corner<N> Describe(const V (&offset)[N], VU hash) const
   {
-    V g[N];
+    Corner<N> corner;
     if (!Variant || (this->Params.Surflet == Basis::Gradient &&
                       this->Params.Gradients == GradientSet::Uniform))
     {
-      UniformGradient(hash, g);
+      UniformGradient(hash, corner.Gradient);
     }
     else if (this->Params.Surflet == Basis::Gradient)
     {
-      PerlinGradient<N>(hash, g);
+      PerlinGradient<N>(hash, corner.Gradient);
     }
     else
     {
-      g[0] = hn::Mul(HashToSigned(hash), Const(2.0f)); // the value
-      for (int axis = 1; axis < N; ++axis)
-      {
-        g[axis] = hn::Zero(DF());
-      }
+      // The value.
+      std::fill(corner.Gradient, corner.Gradient + N, hn::Mul(HashToSigned(hash), Const(2.0f)));
     }
-    V window = Const(1.0f);
+    corner.RowWindow = Const(1.0f);
     for (int axis = 0; axis < N; ++axis)
     {
-      hn::Store(offset[axis], DF(), list.Offset[axis] + i);
-      hn::Store(g[axis], DF(), list.Gradient[axis] + i);
+      corner.Offset[axis] = offset[axis];
       if (Aligned && !Variant && axis > 0)
       {
-        const V v = hn::Sub(offset[axis], this->P[0].Fraction[axis]);
-        hn::Store(v, DF(), list.FromRow[axis] + i);
+        corner.FromRow[axis] = hn::Sub(offset[axis], this->P[0].Fraction[axis]);
         if (this->Params.LatticeWindow)
         {
-          window = hn::Mul(window, QuinticFade(hn::Mul(hn::Abs(v), this->InverseReach)));
+          corner.RowWindow = hn::Mul(corner.RowWindow,
+            QuinticFade(hn::Mul(hn::Abs(corner.FromRow[axis]), this->InverseReach)));
         }
       }
     }
-    hn::Store(window, DF(), list.RowWindow + i);
     if constexpr (Variant)
     {
-      this->DescribeVariant(hash, list, i);
+      for (int axis = 0; axis < N && this->Setup.JitterRadius > 0.0f; ++axis)
+      {
+        corner.Jitter[axis] = this->GetJitter(hash, axis);
+      }
+      corner.Amplitude = Const(1.0f);
+      if (this->Params.Motion)
+      {
+        const V clock = hn::Add(HashToUnit(HashStream(hash, 1)),
+          Const(static_cast<float>(this->Params.Phase - std::floor(this->Params.Phase))));
+        const V tau = hn::Sub(clock, hn::Floor(clock));
+        const V centered = hn::Sub(tau, Const(0.5f));
+        corner.Travel = hn::Mul(centered, Const(static_cast<float>(this->Params.Speed)));
+        const V wave = CosPi(centered); // sin(π τ)
+        corner.Amplitude = hn::Mul(hn::Mul(wave, wave), Const(1.6329931619f));
+      }
+      if (this->Params.Surflet == Basis::Streaks)
+      {
+        const auto on = hn::Lt(
+          HashToUnit(HashStream(hash, 2)), Const(static_cast<float>(this->Params.Density)));
+        corner.Amplitude = hn::IfThenElseZero(on, corner.Amplitude);
+      }
     }
+    return corner;
   }
 
-  WALK_INLINE void DescribeVariant(VU hash, CornerList<N>& list, std::size_t i) const
+  /// Writes a register of corners to the list.
+  WALK_INLINE void Put(const Corner<N>& corner, CornerList<N>& list, std::size_t i) const
   {
-    for (int axis = 0; axis < N && this->Setup.JitterRadius > 0.0f; ++axis)
+    for (int axis = 0; axis < N; ++axis)
     {
-      hn::Store(this->GetJitter(hash, axis), DF(), list.Jitter[axis] + i);
+      hn::Store(corner.Offset[axis], DF(), list.Offset[axis] + i);
+      hn::Store(corner.Gradient[axis], DF(), list.Gradient[axis] + i);
+      if (Aligned && !Variant && axis > 0)
+      {
+        hn::Store(corner.FromRow[axis], DF(), list.FromRow[axis] + i);
+      }
+      if (Variant && this->Setup.JitterRadius > 0.0f)
+      {
+        hn::Store(corner.Jitter[axis], DF(), list.Jitter[axis] + i);
+      }
     }
-    V amplitude = Const(1.0f);
-    if (this->Params.Motion)
+    if constexpr (Variant)
     {
-      const V clock = hn::Add(HashToUnit(HashStream(hash, 1)),
-        Const(static_cast<float>(this->Params.Phase - std::floor(this->Params.Phase))));
-      const V tau = hn::Sub(clock, hn::Floor(clock));
-      const V centered = hn::Sub(tau, Const(0.5f));
-      hn::Store(
-        hn::Mul(centered, Const(static_cast<float>(this->Params.Speed))), DF(), list.Travel + i);
-      const V wave = CosPi(centered); // sin(π τ)
-      amplitude = hn::Mul(hn::Mul(wave, wave), Const(1.6329931619f));
+      hn::Store(corner.Travel, DF(), list.Travel + i);
+      hn::Store(corner.Amplitude, DF(), list.Amplitude + i);
     }
-    if (this->Params.Surflet == Basis::Streaks)
+    else if constexpr (Aligned)
     {
-      const auto on = hn::Lt(
-        HashToUnit(HashStream(hash, 2)), Const(static_cast<float>(this->Params.Density)));
-      amplitude = hn::IfThenElseZero(on, amplitude);
+      hn::Store(corner.RowWindow, DF(), list.RowWindow + i);
     }
-    hn::Store(amplitude, DF(), list.Amplitude + i);
   }
 
   /// Adds those corners of the list that reach the samples to their sums.
@@ -926,12 +1118,14 @@ private:
     for (std::size_t i = 0; i < list.Count; i += Lanes)
     {
       const auto listed = hn::FirstN(DF(), list.Count - i);
+      VI corner[N];
       V offset[N];
       for (int axis = 0; axis < N; ++axis)
       {
-        offset[axis] = hn::ConvertTo(DF(), hn::Load(DI(), list.Index[axis] + i));
+        corner[axis] = hn::Load(DI(), list.Index[axis] + i);
+        offset[axis] = hn::ConvertTo(DF(), corner[axis]);
       }
-      const VU hash = this->HashCorners(list, i);
+      const VU hash = this->HashCorners(corner);
       if (this->Params.AnisotropicWeight)
       {
         this->AddReaching(group, offset, hash, listed, i, bits);
@@ -943,7 +1137,7 @@ private:
           all |= ToBits(listed) << i;
         }
       }
-      this->Describe(offset, hash, list, i);
+      this->Put(this->Describe(offset, hash), list, i);
     }
     for (std::size_t r = group.Begin; r < group.End; ++r)
     {
@@ -959,7 +1153,8 @@ private:
     this->Visited += this->GetCount(r) * hwy::PopCount(bits);
     for (; bits != 0; bits &= bits - 1)
     {
-      this->AddSurflet(sample, list, hwy::Num0BitsBelowLS1Bit_Nonzero64(bits), sums);
+      const std::size_t corner = hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
+      this->AddSurflet(sample, Corner<N>(list, corner), sums);
     }
     this->Total[r] = sums;
   }
@@ -975,7 +1170,7 @@ private:
     const V& CrossFraction;
   };
 
-  WALK_INLINE V GetWindow(const CornerList<N>& list, std::size_t corner, const V (&v)[N]) const
+  WALK_INLINE V GetWindow(const Corner<N>& corner, const V (&v)[N]) const
   {
     if (!this->Params.LatticeWindow)
     {
@@ -986,7 +1181,7 @@ private:
       V window = QuinticFade(hn::Mul(hn::Abs(v[0]), this->InverseReach));
       if constexpr (Aligned)
       {
-        return hn::Mul(Const(list.RowWindow[corner]), window);
+        return hn::Mul(corner.RowWindow, window);
       }
       for (int axis = 1; axis < N; ++axis)
       {
@@ -1011,18 +1206,18 @@ private:
   }
 
   WALK_INLINE void AddSurflet(
-    const Sample& sample, const CornerList<N>& list, std::size_t corner, Sums& sums) const
+    const Sample& sample, const Corner<N>& corner, Sums& sums) const
   {
     V offset[N];
     V v[N];
     for (int axis = 0; axis < N; ++axis)
     {
-      offset[axis] = Const(list.Offset[axis][corner]);
+      offset[axis] = corner.Offset[axis];
       if (!Aligned || axis == 0)
       {
         offset[axis] = hn::Sub(offset[axis], sample.Shift[axis]);
       }
-      v[axis] = Aligned && !Variant && axis > 0 ? Const(list.FromRow[axis][corner])
+      v[axis] = Aligned && !Variant && axis > 0 ? corner.FromRow[axis]
                                                 : hn::Sub(offset[axis], sample.Fraction[axis]);
     }
     if constexpr (Variant)
@@ -1035,7 +1230,7 @@ private:
       this->ToPlace(index, v);
       for (int axis = 0; axis < N && this->Setup.JitterRadius > 0.0f; ++axis)
       {
-        v[axis] = hn::Add(v[axis], Const(list.Jitter[axis][corner]));
+        v[axis] = hn::Add(v[axis], corner.Jitter[axis]);
       }
     }
 
@@ -1085,7 +1280,7 @@ private:
     {
       if (this->Params.Motion)
       {
-        s = hn::MulAdd(hn::Mul(Const(list.Travel[corner]), sample.F.Sense),
+        s = hn::MulAdd(hn::Mul(corner.Travel, sample.F.Sense),
           hn::Div(Const(1.0f), hn::Sqrt(sample.F.Along)), s);
       }
     }
@@ -1100,12 +1295,12 @@ private:
       across2 = hn::MulAdd(hn::Mul(hn::Sub(sample.F.Second, sample.F.Across), r), r, across2);
     }
     const V q = hn::MulAdd(ks, s, across2);
-    V weight = this->GetWindow(list, corner, v);
+    V weight = this->GetWindow(corner, v);
 
     V amplified = weight;
     if constexpr (Variant)
     {
-      const V amplitude = Const(list.Amplitude[corner]);
+      const V amplitude = corner.Amplitude;
       if (this->Params.Surflet == Basis::Streaks)
       {
         this->AddStreak(sample, amplitude, weight, s, across2, sums);
@@ -1119,7 +1314,7 @@ private:
       if (this->Params.Surflet == Basis::Value)
       {
         sums.Noise =
-          hn::MulAdd(amplified, Const(list.Gradient[0][corner]), sums.Noise);
+          hn::MulAdd(amplified, corner.Gradient[0], sums.Noise);
         sums.Variance =
           hn::MulAdd(hn::Mul(weight, weight), Const(1.0f / 3.0f), sums.Variance);
         sums.Weight = hn::Add(sums.Weight, weight);
@@ -1158,7 +1353,7 @@ private:
     V g[N];
     for (int axis = 0; axis < N; ++axis)
     {
-      g[axis] = Const(list.Gradient[axis][corner]);
+      g[axis] = corner.Gradient[axis];
     }
     sums.Noise = hn::MulAdd(amplified, Dot(g, Gv), sums.Noise);
     if (this->Params.Normalize == Normalization::UnitVariance)
@@ -1189,6 +1384,9 @@ private:
   /// Samples that are farther apart than this, as their surflets see it, do not share a list.
   static constexpr float LargestSpread = 1.5f;
 
+  /// A little more than needed: every sample must see all its own corners, whatever rounding does.
+  static constexpr float Slack = 1e-3f;
+
   const NoiseSetup& Setup;
   const NoiseParameters& Params;
   const OctaveSetup& Octave;
@@ -1200,8 +1398,8 @@ private:
   Frame<N> F[TileRegisters];
   Places<N> P[TileRegisters];
   V CrossFraction[TileRegisters];
-  /// The cell that offsets count from, and the samples' own cells from there.
-  std::uint32_t Cell[N];
+  /// The cells that offsets count from, and the samples' own cells from there.
+  VU Cell[N];
   V Shift[TileRegisters][N];
   Sums Total[TileRegisters];
 };

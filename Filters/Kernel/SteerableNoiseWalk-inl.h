@@ -22,8 +22,8 @@ struct Places
 /// first, first + 1, ... (Highway 1.0 makes them lane by lane).
 HWY_INLINE VI RampInt(int first)
 {
-  HWY_ALIGN static constexpr std::int32_t steps[16] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
-    14, 15 };
+  HWY_ALIGN static constexpr std::int32_t steps[16] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12,
+    13, 14, 15 };
   static_assert(Lanes <= 16);
   return hn::Add(hn::Set(DI(), first), hn::Load(DI(), steps));
 }
@@ -126,8 +126,7 @@ struct Group
   float Across[3];
 
   /// Bounds, from what places, directions and bends are off their linear change.
-  WALK_INLINE void SetBounds(
-    float place, float direction, float bend, float travel, bool oblique)
+  WALK_INLINE void SetBounds(float place, float direction, float bend, float travel, bool oblique)
   {
     float place2 = 0.0f;
     float direction2 = 0.0f;
@@ -142,8 +141,7 @@ struct Group
     }
     this->RowSpread = oblique ? 0.0f : std::abs(this->PlaceStep[0]);
     const float places = std::sqrt(place2);
-    const float fromRow =
-      std::sqrt(std::max(0.0f, place2 - this->RowSpread * this->RowSpread));
+    const float fromRow = std::sqrt(std::max(0.0f, place2 - this->RowSpread * this->RowSpread));
     const float turn = std::sqrt(direction2);
     const float change = std::sqrt(bend2);
     const float kappa = this->BendLength + change + bend;
@@ -154,8 +152,7 @@ struct Group
     this->Spread = places + place;
     this->AlongRest = second + travel;
     this->AlongReach = fromRow + turn * far + second + travel;
-    this->Rest[0] =
-      place + (along + second) * (turn + 0.5f * kappa * (along + second));
+    this->Rest[0] = place + (along + second) * (turn + 0.5f * kappa * (along + second));
     this->Rest[1] = direction + kappa * second + along * change;
     this->Rest[2] = 0.5f * bend;
     this->Across[0] = this->Rest[0] + fromRow;
@@ -184,8 +181,7 @@ WALK_INLINE V GetTaper(V distance, V inverseLength, V halfWidth, bool tapers)
   const V s = hn::Mul(hn::Max(distance, hn::Zero(DF())), inverseLength);
   const V left = hn::NegMulAdd(s, s, Const(1.0f));
   const V taper = tapers ? hn::Sqrt(hn::Max(left, hn::Zero(DF()))) : Const(1.0f);
-  return hn::IfThenElse(
-    hn::Lt(left, hn::Zero(DF())), Const(-1e9f), hn::Mul(halfWidth, taper));
+  return hn::IfThenElse(hn::Lt(left, hn::Zero(DF())), Const(-1e9f), hn::Mul(halfWidth, taper));
 }
 
 /// Where lattice rows are cut: the group's reach in all lanes, or that of a sample in each.
@@ -316,17 +312,13 @@ private:
     return this->Setup.Biaxial ? hn::Min(frame.Across, frame.Second) : frame.Across;
   }
 
-  WALK_INLINE bool IsStreaks() const
-  {
-    return Variant && this->Params.Surflet == Basis::Streaks;
-  }
+  WALK_INLINE bool IsStreaks() const { return Variant && this->Params.Surflet == Basis::Streaks; }
 
   /// How far surflets travel to either side, in half-lengths.
   WALK_INLINE float GetTravel() const
   {
-    return Variant && this->Params.Motion
-      ? 0.5f * std::abs(static_cast<float>(this->Params.Speed))
-      : 0.0f;
+    return Variant && this->Params.Motion ? 0.5f * std::abs(static_cast<float>(this->Params.Speed))
+                                          : 0.0f;
   }
 
   /// Half axes of the surflet from the least eigenvalues.
@@ -359,7 +351,8 @@ private:
     const bool streaks = this->IsStreaks();
     const V one = Const(1.0f);
     const V rootInverse = hn::Div(one, hn::Sqrt(frame.Along));
-    const V length = hn::MulAdd(Const(streaks ? 1.0f : std::sqrt(support)), rootInverse, Const(Slack));
+    const V length =
+      hn::MulAdd(Const(streaks ? 1.0f : std::sqrt(support)), rootInverse, Const(Slack));
     reach.HalfWidth = hn::Add(
       hn::Div(Const(streaks ? support : std::sqrt(support)), hn::Sqrt(this->GetLeastAcross(r))),
       Const(Slack));
@@ -379,7 +372,8 @@ private:
   {
     const float first = hn::GetLane(get(group.Begin));
     const float last = LaneOf(get(group.End - 1), Lanes - 1);
-    const float lambda = 2.0f / std::max(1.0f, static_cast<float>(Lanes * (group.End - group.Begin)) - 1.0f);
+    const float lambda =
+      2.0f / std::max(1.0f, static_cast<float>(Lanes * (group.End - group.Begin)) - 1.0f);
     middle = 0.5f * (first + last);
     step = 0.5f * (last - first);
     for (std::size_t r = group.Begin; r < group.End; ++r)
@@ -429,8 +423,8 @@ private:
         this->Shift[r][axis] = hn::Zero(DF());
         if (!Aligned || axis == 0)
         {
-          this->Shift[r][axis] = hn::ConvertTo(DF(),
-            hn::BitCast(DI(), hn::Sub(this->P[r].Cell[axis], this->Cell[axis])));
+          this->Shift[r][axis] = hn::ConvertTo(
+            DF(), hn::BitCast(DI(), hn::Sub(this->P[r].Cell[axis], this->Cell[axis])));
         }
       }
       sign[r] = hn::And(cosine, hn::BitCast(DF(), hn::Set(DU(), 0x80000000u)));
@@ -456,8 +450,8 @@ private:
       else
       {
         SplitLinear(group, group.Place[axis], group.PlaceStep[axis], place2,
-          [&](std::size_t r)
-            HWY_ATTR { return hn::Add(this->Shift[r][axis], this->P[r].Fraction[axis]); });
+          [&](std::size_t r) HWY_ATTR
+          { return hn::Add(this->Shift[r][axis], this->P[r].Fraction[axis]); });
       }
     }
     float place = GetLargest(group, place2);
@@ -497,8 +491,7 @@ private:
     }
     group.BendLength = std::sqrt(length2);
     const float direction = GetLargest(group, direction2) + std::abs(1.0f - norm);
-    const float bend =
-      this->Setup.Curved ? GetLargest(group, bend2) + std::abs(parallel) : 0.0f;
+    const float bend = this->Setup.Curved ? GetLargest(group, bend2) + std::abs(parallel) : 0.0f;
     group.SetBounds(place, direction, bend, travel, this->IsOblique());
     return group.GetLargestWidth() - group.HalfWidth < LargestSpread;
   }
@@ -511,10 +504,7 @@ private:
     return hn::ConvertTo(DI(), hn::Max(hn::Min(place, Const(1000.0f)), Const(-1000.0f)));
   }
 
-  WALK_INLINE bool IsOblique() const
-  {
-    return Variant && this->Params.Grid == Lattice::Simplicial;
-  }
+  WALK_INLINE bool IsOblique() const { return Variant && this->Params.Grid == Lattice::Simplicial; }
 
   /// From indices of the lattice to its places.
   WALK_INLINE void ToPlace(const V (&index)[N], V (&place)[N]) const
@@ -569,8 +559,8 @@ private:
         w2 += w * w;
       }
     }
-    const V across = hn::Sqrt(
-      hn::Max(hn::NegMulAdd(result.Along, result.Along, Const(w2)), hn::Zero(DF())));
+    const V across =
+      hn::Sqrt(hn::Max(hn::NegMulAdd(result.Along, result.Along, Const(w2)), hn::Zero(DF())));
     result.Width = hn::MulAdd(hn::Add(reach.LargestWidth, this->GetLooseness(reach)), across,
       hn::Mul(Const(this->Setup.JitterRadius), hn::Abs(result.Along)));
     result.InverseAlong = Inverse(result.Along);
@@ -595,8 +585,8 @@ private:
     const V half = hn::Mul(Const(0.5f), factor);
     const V first = hn::Mul(hn::Mul(low, low), half);
     const V last = hn::Mul(hn::Mul(high, high), half);
-    const V turn = hn::IfThenElse(
-      hn::Lt(hn::Mul(low, high), hn::Zero(DF())), hn::Zero(DF()), first);
+    const V turn =
+      hn::IfThenElse(hn::Lt(hn::Mul(low, high), hn::Zero(DF())), hn::Zero(DF()), first);
     least = hn::Min(hn::Min(first, last), turn);
     greatest = hn::Max(hn::Max(first, last), turn);
   }
@@ -605,8 +595,7 @@ private:
   WALK_INLINE void Narrow(
     const Reach<N>& reach, int number, const IndexAxis& axis, V index, V& low, V& high) const
   {
-    const V offset =
-      hn::Sub(index, hn::Sub(reach.Place[number], Const(this->Setup.JitterMiddle)));
+    const V offset = hn::Sub(index, hn::Sub(reach.Place[number], Const(this->Setup.JitterMiddle)));
     V least = hn::Zero(DF());
     V greatest = hn::Zero(DF());
     for (int round = 0; round < (this->Setup.Curved ? 2 : 1); ++round)
@@ -705,8 +694,8 @@ private:
   }
 
   /// Puts the corners of these rows on the list.
-  HWY_NOINLINE void AddRows(const Group<N>& group, const Reach<N>& reach,
-    const std::int32_t* rowY, const std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
+  HWY_NOINLINE void AddRows(const Group<N>& group, const Reach<N>& reach, const std::int32_t* rowY,
+    const std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
   {
     HWY_ALIGN std::int32_t firsts[Lanes];
     HWY_ALIGN std::int32_t lasts[Lanes];
@@ -738,8 +727,8 @@ private:
           {
             hn::StoreU(hn::Set(DI(), rowZ[i + lane]), DI(), list.Index[2] + list.Count);
           }
-          list.Count += static_cast<std::size_t>(
-            std::min(static_cast<int>(Lanes), lasts[lane] - x + 1));
+          list.Count +=
+            static_cast<std::size_t>(std::min(static_cast<int>(Lanes), lasts[lane] - x + 1));
         }
       }
     }
@@ -769,8 +758,7 @@ private:
       s0 = hn::MulAdd(row[i], reach.U[i], s0);
       if (this->IsOblique())
       {
-        se = hn::MulAdd(
-          Const(static_cast<float>(this->Setup.LatticeSteps[i][0])), reach.U[i], se);
+        se = hn::MulAdd(Const(static_cast<float>(this->Setup.LatticeSteps[i][0])), reach.U[i], se);
       }
     }
     V t0[N];
@@ -778,12 +766,13 @@ private:
     for (int i = 0; i < N; ++i)
     {
       t0[i] = hn::NegMulAdd(s0, reach.U[i], row[i]);
-      te[i] = hn::NegMulAdd(
-        se, reach.U[i], Const(static_cast<float>(this->Setup.LatticeSteps[i][0])));
+      te[i] =
+        hn::NegMulAdd(se, reach.U[i], Const(static_cast<float>(this->Setup.LatticeSteps[i][0])));
     }
     const V inverse = Inverse(se);
     const V middle = hn::Neg(hn::Mul(s0, inverse));
-    const V half = hn::Abs(hn::Mul(hn::Add(reach.Length, Const(this->Setup.JitterRadius)), inverse));
+    const V half =
+      hn::Abs(hn::Mul(hn::Add(reach.Length, Const(this->Setup.JitterRadius)), inverse));
     low = hn::Max(low, hn::Sub(middle, half));
     high = hn::Min(high, hn::Add(middle, half));
     for (int round = 0; round < (this->Setup.Curved ? 2 : 1); ++round)
@@ -795,19 +784,19 @@ private:
   }
 
   /// What a tube around the parabola leaves of [low, high], whose s bound its sag and its width.
-  WALK_INLINE void CutByTube(const Reach<N>& reach, V s0, V se, const V (&t0)[N], const V (&te)[N],
-    V& low, V& high) const
+  WALK_INLINE void CutByTube(
+    const Reach<N>& reach, V s0, V se, const V (&t0)[N], const V (&te)[N], V& low, V& high) const
   {
     const V radius = Const(this->Setup.JitterRadius);
     const V first = hn::MulAdd(low, se, s0);
     const V last = hn::MulAdd(high, se, s0);
     const V most = hn::Max(hn::Abs(first), hn::Abs(last));
-    const V least = hn::IfThenElseZero(hn::Ge(hn::Mul(first, last), hn::Zero(DF())),
-      hn::Min(hn::Abs(first), hn::Abs(last)));
+    const V least = hn::IfThenElseZero(
+      hn::Ge(hn::Mul(first, last), hn::Zero(DF())), hn::Min(hn::Abs(first), hn::Abs(last)));
     V width = GetTaper(hn::Sub(least, hn::Add(radius, reach.AlongReach)), reach.InverseLength,
       reach.HalfWidth, reach.Tapers);
-    width = hn::Add(width,
-      hn::Add(Quadratic(reach.Across, hn::Add(most, radius)), this->GetLooseness(reach)));
+    width = hn::Add(
+      width, hn::Add(Quadratic(reach.Across, hn::Add(most, radius)), this->GetLooseness(reach)));
     V sag = hn::Zero(DF());
     if (this->Setup.Curved)
     {
@@ -907,8 +896,7 @@ private:
         {
           offset[axis] = hn::ConvertTo(DF(), corner[axis]);
         }
-        this->AddSurflet(
-          sample, this->Describe(offset, this->HashCorners(corner)), this->Total[r]);
+        this->AddSurflet(sample, this->Describe(offset, this->HashCorners(corner)), this->Total[r]);
         this->Visited += this->GetCount(r);
       }
     }
@@ -997,12 +985,11 @@ private:
       const V distance = hn::Abs(hn::MulAdd(sStep, Const(first + half), s));
       const V shortest =
         hn::Sub(distance, hn::MulAdd(hn::Abs(sStep), Const(half), Const(group.AlongRest)));
-      const V width = hn::Add(more,
-        GetTaper(
-          shortest, Const(group.InverseLength), Const(group.HalfWidth), group.Tapers));
+      const V width = hn::Add(
+        more, GetTaper(shortest, Const(group.InverseLength), Const(group.HalfWidth), group.Tapers));
       const auto inside = hn::Le(least, hn::MulAdd(width, width, Const(1e-5f)));
-      bits[r] |=
-        ToBits(hn::And(listed, hn::And(inside, hn::Gt(width, hn::Zero(DF()))))) << firstBit;
+      bits[r] |= ToBits(hn::And(listed, hn::And(inside, hn::Gt(width, hn::Zero(DF())))))
+        << firstBit;
     }
   }
 
@@ -1021,8 +1008,8 @@ private:
   WALK_INLINE Corner<N> Describe(const V (&offset)[N], VU hash) const
   {
     Corner<N> corner;
-    if (!Variant || (this->Params.Surflet == Basis::Gradient &&
-                      this->Params.Gradients == GradientSet::Uniform))
+    if (!Variant ||
+      (this->Params.Surflet == Basis::Gradient && this->Params.Gradients == GradientSet::Uniform))
     {
       UniformGradient(hash, corner.Gradient);
     }
@@ -1051,7 +1038,7 @@ private:
     }
     if constexpr (Variant)
     {
-      for (int axis = 0; axis < N && this->Setup.JitterRadius > 0.0f; ++axis)
+      for (int axis = 0; axis<N&& this->Setup.JitterRadius> 0.0f; ++axis)
       {
         corner.Jitter[axis] = this->GetJitter(hash, axis);
       }
@@ -1068,8 +1055,8 @@ private:
       }
       if (this->Params.Surflet == Basis::Streaks)
       {
-        const auto on = hn::Lt(
-          HashToUnit(HashStream(hash, 2)), Const(static_cast<float>(this->Params.Density)));
+        const auto on =
+          hn::Lt(HashToUnit(HashStream(hash, 2)), Const(static_cast<float>(this->Params.Density)));
         corner.Amplitude = hn::IfThenElseZero(on, corner.Amplitude);
       }
     }
@@ -1205,8 +1192,7 @@ private:
     }
   }
 
-  WALK_INLINE void AddSurflet(
-    const Sample& sample, const Corner<N>& corner, Sums& sums) const
+  WALK_INLINE void AddSurflet(const Sample& sample, const Corner<N>& corner, Sums& sums) const
   {
     V offset[N];
     V v[N];
@@ -1228,7 +1214,7 @@ private:
         index[axis] = v[axis];
       }
       this->ToPlace(index, v);
-      for (int axis = 0; axis < N && this->Setup.JitterRadius > 0.0f; ++axis)
+      for (int axis = 0; axis<N&& this->Setup.JitterRadius> 0.0f; ++axis)
       {
         v[axis] = hn::Add(v[axis], corner.Jitter[axis]);
       }
@@ -1313,10 +1299,8 @@ private:
       amplified = hn::Mul(amplitude, weight);
       if (this->Params.Surflet == Basis::Value)
       {
-        sums.Noise =
-          hn::MulAdd(amplified, corner.Gradient[0], sums.Noise);
-        sums.Variance =
-          hn::MulAdd(hn::Mul(weight, weight), Const(1.0f / 3.0f), sums.Variance);
+        sums.Noise = hn::MulAdd(amplified, corner.Gradient[0], sums.Noise);
+        sums.Variance = hn::MulAdd(hn::Mul(weight, weight), Const(1.0f / 3.0f), sums.Variance);
         sums.Weight = hn::Add(sums.Weight, weight);
         return;
       }
@@ -1376,8 +1360,7 @@ private:
       hn::Mul(StreakProfile(sigma), FadeOf(this->Params.Interpolant, across)));
     const auto density = static_cast<float>(this->Params.Density);
     sums.Noise = hn::MulAdd(amplitude, profile, sums.Noise);
-    sums.Variance =
-      hn::MulAdd(hn::Mul(Const(density), profile), profile, sums.Variance);
+    sums.Variance = hn::MulAdd(hn::Mul(Const(density), profile), profile, sums.Variance);
     sums.Weight = hn::Add(sums.Weight, profile);
   }
 

@@ -45,8 +45,7 @@ bool IsUsable(vtkPoints* points, vtkIdType point)
 {
   double x[3];
   points->GetPoint(point, x);
-  return std::all_of(
-    x, x + 3, [](double value) { return std::abs(value) <= LargestCoordinate; });
+  return std::all_of(x, x + 3, [](double value) { return std::abs(value) <= LargestCoordinate; });
 }
 
 /// Cells whose position is that of one of their simplices, of which VTK may find none.

@@ -27,8 +27,8 @@ std::atomic<std::int64_t> Peak{ 0 };
 
 void* Count(void* memory)
 {
-  const std::int64_t now =
-    Allocated += memory ? static_cast<std::int64_t>(malloc_usable_size(memory)) : 0;
+  const std::int64_t now = Allocated +=
+    memory ? static_cast<std::int64_t>(malloc_usable_size(memory)) : 0;
   for (std::int64_t peak = Peak; now > peak && !Peak.compare_exchange_weak(peak, now);)
   {
   }
@@ -49,8 +49,14 @@ extern "C"
   void* __libc_memalign(std::size_t, std::size_t);
   void __libc_free(void*);
 
-  void* malloc(std::size_t size) { return Count(__libc_malloc(size)); }
-  void* calloc(std::size_t count, std::size_t size) { return Count(__libc_calloc(count, size)); }
+  void* malloc(std::size_t size)
+  {
+    return Count(__libc_malloc(size));
+  }
+  void* calloc(std::size_t count, std::size_t size)
+  {
+    return Count(__libc_calloc(count, size));
+  }
   void* realloc(void* memory, std::size_t size)
   {
     Discount(memory);
@@ -60,7 +66,10 @@ extern "C"
   {
     return Count(__libc_memalign(alignment, size));
   }
-  void* aligned_alloc(std::size_t alignment, std::size_t size) { return memalign(alignment, size); }
+  void* aligned_alloc(std::size_t alignment, std::size_t size)
+  {
+    return memalign(alignment, size);
+  }
   int posix_memalign(void** memory, std::size_t alignment, std::size_t size)
   {
     *memory = memalign(alignment, size);

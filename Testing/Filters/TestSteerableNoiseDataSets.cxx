@@ -278,8 +278,7 @@ TEST(SteerableNoiseDataSets, StripsAndPointSetsBendLikeTheirSimplices)
   const std::vector<double> corners = { 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2 };
   const std::function<void(vtkSteerableNoiseFilter*)> configure =
     [](vtkSteerableNoiseFilter* filter) { filter->SetFeatureSize(1.0); };
-  const std::function<void(vtkSteerableNoiseFilter*)> straight =
-    [](vtkSteerableNoiseFilter* filter)
+  const std::function<void(vtkSteerableNoiseFilter*)> straight = [](vtkSteerableNoiseFilter* filter)
   {
     filter->SetFeatureSize(1.0);
     filter->FollowCurvatureOff();
@@ -287,8 +286,7 @@ TEST(SteerableNoiseDataSets, StripsAndPointSetsBendLikeTheirSimplices)
   const std::vector<float> bent = Values(Apply(strip, configure).Output);
   EXPECT_LE(LargestDifference(bent, Values(Apply(triangles, configure).Output)), 1e-6);
   EXPECT_GT(LargestDifference(bent, Values(Apply(strip, straight).Output)), 1e-3);
-  EXPECT_LE(LargestDifference(
-              Values(Apply(Cells(VTK_CONVEX_POINT_SET, corners), configure).Output),
+  EXPECT_LE(LargestDifference(Values(Apply(Cells(VTK_CONVEX_POINT_SET, corners), configure).Output),
               Values(Apply(Cells(VTK_TETRA, corners), configure).Output)),
     1e-6);
 }
@@ -698,7 +696,8 @@ std::vector<Case> BadInput()
   // More points than memory holds, and arrays that do not fit: refused before anything is allocated.
   for (const int tuples : { 0, 3 })
   {
-    add("TwoToThe31PointsWith" + std::to_string(tuples) + "Tuples",
+    add(
+      "TwoToThe31PointsWith" + std::to_string(tuples) + "Tuples",
       [=]
       {
         auto huge = vtkSmartPointer<vtkImageData>::New();

@@ -855,14 +855,17 @@ TEST(SteerableNoise, HasTheSameBitsAloneAndAmongItsNeighbours)
   other.Grid = Lattice::Simplicial;
   other.Interpolant = Fade::Wide;
   all.push_back(other);
-  for (std::size_t i = 0; i < all.size(); ++i)
+  for (std::int64_t target : SimdLevels())
   {
-    EXPECT_EQ(
-      CountDifferent(SplitNoise<2>(all[i], samples, one), SplitNoise<2>(all[i], samples, {})), 0)
-      << "parameters " << i << " in 2D";
-    EXPECT_EQ(
-      CountDifferent(SplitNoise<3>(all[i], samples, one), SplitNoise<3>(all[i], samples, {})), 0)
-      << "parameters " << i << " in 3D";
+    const SimdLevel level(target);
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+      SCOPED_TRACE("parameters " + std::to_string(i) + ", " + hwy::TargetName(target));
+      EXPECT_EQ(
+        CountDifferent(SplitNoise<2>(all[i], samples, one), SplitNoise<2>(all[i], samples, {})), 0);
+      EXPECT_EQ(
+        CountDifferent(SplitNoise<3>(all[i], samples, one), SplitNoise<3>(all[i], samples, {})), 0);
+    }
   }
 }
 

@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/// Quality 0 without extensions: the corners of the sample's own cell (a part of SteerableNoiseSimd-inl.h, which includes it).
+
+/// Gradients of the lattice rows on both sides of a row of pixels, hashed once and kept while they serve.
+template <int N>
+class GradientRows
+{
+public:
+  /// Columns [firstColumn, firstColumn + columns).
+  GradientRows(const OctaveSetup& octave, std::int64_t firstColumn, std::size_t columns)
+    : Octave(octave)
+    , FirstColumn(firstColumn)
+    , Stride((columns + Lanes - 1) / Lanes * Lanes + Lanes)
+    , Gradients(static_cast<std::size_t>(Slots) * N * Stride)
+    , Tags(Slots, { INT64_MIN, INT64_MIN })
+  {
+  }
+
+  /// Makes the rows of the cell (y, z) ready.
+  void MoveTo(std::int64_t y, std::int64_t z)
+  {
+    for (int slot = 0; slot < Slots; ++slot)
+    {
+      const std::int64_t row = y + slot % 2;
+      const std::int64_t slice = N == 3 ? z + slot / 2 : 0;
+      const auto home = static_cast<std::size_t>((row & 1) + 2 * (slice & 1));
+      float* gradients = this->Gradients.data() + home * N * this->Stride;
+      if (this->Tags[home][0] != row || this->Tags[home][1] != slice)
+      {
+        this->Tags[home] = { row, slice };
+        this->HashRow(row, slice, gradients);
+      }
+      this->Rows[slot] = gradients;
+    }
+  }
+
+  /// The row at this offset, 0 or 1, from the cell; each of its N components is GetStride() long.
+  const float* GetRow(int oy, int oz) const { return this->Rows[oy + 2 * oz]; }
+
+  std::size_t GetStride() const { return this->Stride; }
+
+private:
+  void HashRow(std::int64_t row, std::int64_t slice, float* gradients) const
+  {
+    const auto& period = this->Octave.Period;
+    VU rowHash = hn::Set(DU(),
+      steerable::HashOneAxis(WrapToPeriod(row, period[1]), 1) ^
+        steerable::HashOneAxis(N == 3 ? WrapToPeriod(slice, period[2]) : 0, 2) ^ this->Octave.Seed);
+    HWY_ALIGN std::uint32_t column[Lanes];
+    for (std::size_t i = 0; i < this->Stride; i += Lanes)
+    {
+      for (std::size_t lane = 0; lane < Lanes; ++lane)
+      {
+        column[lane] =
+          WrapToPeriod(this->FirstColumn + static_cast<std::int64_t>(i + lane), period[0]);
+      }
+      V g[N];
+      UniformGradient(HashJoinAxes(hn::Xor(HashOneAxis(hn::Load(DU(), column), 0), rowHash)), g);
+      for (int axis = 0; axis < N; ++axis)
+      {
+        hn::StoreU(g[axis], DF(), gradients + axis * this->Stride + i);
+      }
+    }
+  }
+
+  OctaveSetup Octave;
+  std::int64_t FirstColumn;
+  static constexpr int Slots = 1 << (N - 1);
+  std::size_t Stride;
+  std::vector<float> Gradients;
+  std::vector<std::array<std::int64_t, 2>> Tags;
+  std::array<const float*, Slots> Rows;
+};
+
+/// Corners of neighbouring pixels: gradients come from rows, permuted to the lanes.
+template <int N>
+class RowCorners
+{
+public:
+  HWY_INLINE explicit RowCorners(const GradientRows<N>& rows)
+    : Stride(rows.GetStride())
+    , Lane(hn::Zero(DU()))
+  {
+    for (int slot = 0; slot < Slots; ++slot)
+    {
+      this->Rows[slot] = rows.GetRow(slot % 2, slot / 2);
+    }
+  }
+
+  /// The lanes' cells; those along x are counted from the first column of the rows.
+  HWY_INLINE void SetCells(const VU (&cells)[N])
+  {
+    const std::uint32_t first = hn::GetLane(cells[0]);
+    this->First = first;
+    this->Lane = hn::Sub(cells[0], hn::Set(DU(), first));
+  }
+  HWY_INLINE void SelectRow(int oy, int oz) { this->Row = this->Rows[oy + 2 * oz] + this->First; }
+  HWY_INLINE void GetGradient(int ox, V (&g)[N]) const
+  {
+    const auto lane = hn::IndicesFromVec(DF(), this->Lane);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      g[axis] = hn::TableLookupLanes(Load(this->Row + axis * this->Stride + ox), lane);
+    }
+  }
+
+private:
+  static constexpr int Slots = 1 << (N - 1);
+  // Copies, which the compiler can keep in registers.
+  const float* Rows[Slots];
+  std::size_t Stride;
+  const float* Row = nullptr;
+  std::size_t First = 0;
+  VU Lane;
+};
+
+/// Corners of the cells of samples anywhere: hashed lane by lane.
+template <int N>
+class LaneCorners
+{
+public:
+  HWY_INLINE explicit LaneCorners(const OctaveSetup& octave)
+    : Octave(octave)
+    , Row(hn::Zero(DU()))
+  {
+  }
+
+  HWY_INLINE void SetCells(const VU (&cells)[N])
+  {
+    for (int axis = 0; axis < N; ++axis)
+    {
+      VU next = hn::Add(cells[axis], hn::Set(DU(), 1u));
+      if (this->Octave.Period[axis] > 0)
+      {
+        next = WrapIndex(next, this->Octave.Period[axis]);
+      }
+      this->Hash[axis][0] = HashOneAxis(cells[axis], axis);
+      this->Hash[axis][1] = HashOneAxis(next, axis);
+    }
+    for (VU& hash : this->Hash[0])
+    {
+      hash = hn::Xor(hash, hn::Set(DU(), this->Octave.Seed));
+    }
+  }
+  HWY_INLINE void SelectRow(int oy, int oz)
+  {
+    this->Row = N == 3 ? hn::Xor(this->Hash[1][oy], this->Hash[N - 1][oz]) : this->Hash[1][oy];
+  }
+  HWY_INLINE void GetGradient(int ox, V (&g)[N]) const
+  {
+    UniformGradient(HashJoinAxes(hn::Xor(this->Hash[0][ox], this->Row)), g);
+  }
+
+private:
+  const OctaveSetup& Octave;
+  /// Of the corners below and above.
+  VU Hash[N][2];
+  VU Row;
+};
+
+/**
+ * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix. `near` is
+ * the window of the corner below on each axis; that of the one above is 1 less it.
+ */
+template <int N, class Corners>
+WALK_INLINE V SumOverCell(
+  const V (&u)[N], V along, V across, const V (&f)[N], const V (&near)[N], Corners& corners)
+{
+  // G = b I + (k - b) u uT
+  const V c = hn::Sub(along, across);
+  V G[N][N];
+  for (int i = 0; i < N; ++i)
+  {
+    const V cu = hn::Mul(c, u[i]);
+    for (int j = i; j < N; ++j)
+    {
+      G[i][j] = i == j ? hn::MulAdd(cu, u[j], across) : hn::Mul(cu, u[j]);
+      G[j][i] = G[i][j];
+    }
+  }
+  // G v and q = v G v at the first corner. A step along an axis adds a column of G to the one, and the
+  // sum of that component before and after to the other.
+  V Gv[N];
+  for (int i = 0; i < N; ++i)
+  {
+    Gv[i] = hn::Neg(Dot(G[i], f));
+  }
+  V q = hn::Neg(Dot(f, Gv));
+  const auto step = [&G](int axis, V(&at)[N], V& distance) HWY_ATTR
+  {
+    distance = hn::Add(distance, at[axis]);
+    for (int i = 0; i < N; ++i)
+    {
+      at[i] = hn::Add(at[i], G[i][axis]);
+    }
+    distance = hn::Add(distance, at[axis]);
+  };
+  // s(1 - t) = 1 - s(t): the sum over two neighbours is far + near (lower - upper).
+  const auto addRow = [&](int oy, int oz) HWY_ATTR
+  {
+    corners.SelectRow(oy, oz);
+    V at[N];
+    V g[N];
+    V distance = q;
+    std::copy(Gv, Gv + N, at);
+    corners.GetGradient(0, g);
+    const V lower = hn::Mul(PlainQuinticFade(distance), Dot(g, at));
+    step(0, at, distance);
+    corners.GetGradient(1, g);
+    const V upper = hn::Mul(PlainQuinticFade(distance), Dot(g, at));
+    return hn::MulAdd(near[0], hn::Sub(lower, upper), upper);
+  };
+  const auto addSlice = [&](int oz) HWY_ATTR
+  {
+    const V lower = addRow(0, oz);
+    step(1, Gv, q);
+    const V upper = addRow(1, oz);
+    return hn::MulAdd(near[1], hn::Sub(lower, upper), upper);
+  };
+  if constexpr (N == 2)
+  {
+    return addSlice(0);
+  }
+  else
+  {
+    V next[N];
+    V nextQ = q;
+    std::copy(Gv, Gv + N, next);
+    step(2, next, nextQ);
+    const V lower = addSlice(0);
+    std::copy(next, next + N, Gv);
+    q = nextQ;
+    const V upper = addSlice(1);
+    return hn::MulAdd(near[2], hn::Sub(lower, upper), upper);
+  }
+}

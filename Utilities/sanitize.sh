@@ -27,7 +27,7 @@ for what in "${@:-address thread fuzz}"; do
           sanitize address "-fsanitize=address,undefined -fno-sanitize-recover=undefined"
         # VTK and MPI keep some memory to the end; what is ours is checked for its use, not for leaks.
         export ASAN_OPTIONS=detect_leaks=0
-        long='-*NoiseQuality*:*LatticeHash*:*EqualsTheReference*:*Subband*'
+        long='-*NoiseQuality*:*AloneAnd*:*LatticeHash*:*EqualsTheReference*:*Subband*'
         "$build/bin/SteerableNoiseKernelTests" --gtest_brief=1 \
           "--gtest_filter=$([ "${SANITIZE_ALL:-}" ] && echo '*' || echo "$long")"
         "$build/bin/SteerableNoiseFilterTests" --gtest_brief=1

@@ -112,7 +112,7 @@ template <int N>
 struct Frame
 {
   V U[N];
-  /// u in two parts, see Walk::SetRow (2D).
+  /// u in two parts, see Walk::AddSurflet (2D).
   V UHigh[2];
   V ULow[2];
   V M[N];

@@ -4,7 +4,7 @@
  * The sum over corners for any Quality and any variant (see SteerableNoiseSimd-inl.h, which includes
  * this for each SIMD level).
  *
- * Neighbouring samples are reached by the same corners. So they are listed once for a register of
+ * Neighbouring samples are reached by the same corners. So they are listed once for a few registers of
  * samples, with a register of corners at a time: first the lattice rows, then the corners on them, then
  * those that really are in reach with their gradients. After that the samples take them one by one.
  * Samples that differ too much, or lie apart, have rows in common only and go to their own corners.
@@ -98,6 +98,7 @@ struct Group
   /// Registers [Begin, End) of the tile.
   std::size_t Begin;
   std::size_t End;
+  float LambdaStep; // between neighbours
   float Place[N];
   float PlaceStep[N]; // as a distance, not in indices of the lattice
   float U[N];
@@ -111,7 +112,6 @@ struct Group
   float InverseLength;
   /// A streak has the same width everywhere.
   bool Tapers;
-  float LambdaStep; // between neighbours
   /// Change of s with λ that comes from the places.
   float AlongStep;
   /// Largest distance between places, and that along a lattice row.
@@ -125,42 +125,51 @@ struct Group
   float Rest[3];
   float Across[3];
 
-  /// Bounds, from what places, directions and bends are off their linear change.
-  WALK_INLINE void SetBounds(float place, float direction, float bend, float travel, bool oblique)
+  /**
+   * Bounds, from what places, directions and bends are off their linear change. Sample λ sees a corner
+   * at v - λ PlaceStep, along u + λ UStep, with the bend + λ BendStep, each up to its rest. Across U,
+   * which only takes away, its t is therefore t - λ (PlaceStep + s UStep + s²/2 BendStep + s sStep Bend)
+   * up to Rest, where s + λ sStep is its s up to AlongRest and sStep = v UStep - AlongStep.
+   */
+  WALK_INLINE void SetBounds(
+    float placeRest, float directionRest, float bendRest, float travel, bool oblique)
   {
     float place2 = 0.0f;
-    float direction2 = 0.0f;
-    float bend2 = 0.0f;
+    float turn2 = 0.0f;
+    float change2 = 0.0f;
     this->AlongStep = 0.0f;
     for (int axis = 0; axis < N; ++axis)
     {
       place2 += this->PlaceStep[axis] * this->PlaceStep[axis];
-      direction2 += this->UStep[axis] * this->UStep[axis];
-      bend2 += this->BendStep[axis] * this->BendStep[axis];
+      turn2 += this->UStep[axis] * this->UStep[axis];
+      change2 += this->BendStep[axis] * this->BendStep[axis];
       this->AlongStep += this->PlaceStep[axis] * this->U[axis];
     }
     this->RowSpread = oblique ? 0.0f : std::abs(this->PlaceStep[0]);
     const float places = std::sqrt(place2);
     const float fromRow = std::sqrt(std::max(0.0f, place2 - this->RowSpread * this->RowSpread));
-    const float turn = std::sqrt(direction2);
-    const float change = std::sqrt(bend2);
-    const float kappa = this->BendLength + change + bend;
-    const float length = this->HalfLength;
-    const float far = this->HalfWidth + 0.5f * length * length * kappa;
-    const float along = std::abs(this->AlongStep) + turn * far;
-    const float second = places * turn + direction * (length + far + places) + place;
-    this->Spread = places + place;
-    this->AlongRest = second + travel;
-    this->AlongReach = fromRow + turn * far + second + travel;
-    this->Rest[0] = place + (along + second) * (turn + 0.5f * kappa * (along + second));
-    this->Rest[1] = direction + kappa * second + along * change;
-    this->Rest[2] = 0.5f * bend;
+    const float turn = std::sqrt(turn2);
+    const float change = std::sqrt(change2);
+    const float kappa = this->BendLength + change + bendRest;
+    // Largest distances of a corner in reach, unbent; and what follows from them.
+    const float mostAlong = this->HalfLength + travel;
+    const float mostAcross = this->HalfWidth + 0.5f * mostAlong * mostAlong * kappa;
+    const float mostTurn = turn * (mostAcross + turn * mostAlong);
+    const float mostStep = std::abs(this->AlongStep) + mostTurn;
+    const float alongRest =
+      places * turn + directionRest * (mostAlong + mostAcross + places) + placeRest;
+    const float both = mostStep + alongRest;
+    this->Spread = places + placeRest;
+    this->AlongRest = alongRest + travel;
+    this->AlongReach = fromRow + mostTurn + alongRest + travel;
+    this->Rest[0] = placeRest + both * (turn + 0.5f * kappa * both);
+    this->Rest[1] = directionRest + kappa * alongRest + mostStep * change;
+    this->Rest[2] = 0.5f * bendRest;
     this->Across[0] = this->Rest[0] + fromRow;
-    this->Across[1] = this->Rest[1] + turn + kappa * (fromRow + turn * far);
+    this->Across[1] = this->Rest[1] + turn + kappa * (fromRow + mostTurn);
     this->Across[2] = this->Rest[2] + 0.5f * change;
-    this->LambdaStep =
-      2.0f / std::max(1.0f, static_cast<float>(Lanes * (this->End - this->Begin)) - 1.0f);
   }
+
   float GetLength() const { return this->HalfLength + this->AlongReach; }
   float GetLargestWidth() const
   {
@@ -175,7 +184,7 @@ WALK_INLINE V Quadratic(const V (&coefficients)[3], V s)
   return hn::MulAdd(hn::MulAdd(coefficients[2], s, coefficients[1]), s, coefficients[0]);
 }
 
-/// Half-width of a surflet at |s| = `distance` and farther; negative beyond its end.
+/// Half-width of a surflet at |s| = `distance` and farther; beyond its end so negative that it stays so.
 WALK_INLINE V GetTaper(V distance, V inverseLength, V halfWidth, bool tapers)
 {
   const V s = hn::Mul(hn::Max(distance, hn::Zero(DF())), inverseLength);
@@ -284,6 +293,8 @@ private:
     Group<N> group;
     group.Begin = begin;
     group.End = end;
+    const auto samples = static_cast<float>(Lanes * (end - begin));
+    group.LambdaStep = 2.0f / std::max(1.0f, samples - 1.0f);
     if (this->SetGroup(group))
     {
       this->AddGroup(group);
@@ -372,14 +383,12 @@ private:
   {
     const float first = hn::GetLane(get(group.Begin));
     const float last = LaneOf(get(group.End - 1), Lanes - 1);
-    const float lambda =
-      2.0f / std::max(1.0f, static_cast<float>(Lanes * (group.End - group.Begin)) - 1.0f);
     middle = 0.5f * (first + last);
     step = 0.5f * (last - first);
     for (std::size_t r = group.Begin; r < group.End; ++r)
     {
       const V index = Ramp(static_cast<float>(Lanes * (r - group.Begin)));
-      const V linear = hn::MulAdd(index, Const(step * lambda), Const(first));
+      const V linear = hn::MulAdd(index, Const(step * group.LambdaStep), Const(first));
       const V rest = hn::Sub(get(r), linear);
       rest2[r] = hn::MulAdd(rest, rest, rest2[r]);
     }
@@ -470,28 +479,35 @@ private:
       std::copy(step, step + N, group.PlaceStep);
       place *= 2.0f;
     }
-    // The middle of unit vectors is shorter than 1, and that of the bends not quite across it.
+    // The middle of unit vectors is shorter than 1, and bends and changes are not quite across it.
     float norm2 = 0.0f;
-    float parallel = 0.0f;
     for (int axis = 0; axis < N; ++axis)
     {
       norm2 += group.U[axis] * group.U[axis];
     }
     const float norm = std::sqrt(norm2);
+    float alongBend = 0.0f;
+    float alongBendStep = 0.0f;
+    float alongStep = 0.0f;
     for (int axis = 0; axis < N; ++axis)
     {
       group.U[axis] /= norm;
-      parallel += group.Bend[axis] * group.U[axis];
+      alongBend += group.Bend[axis] * group.U[axis];
+      alongBendStep += group.BendStep[axis] * group.U[axis];
+      alongStep += group.UStep[axis] * group.U[axis];
     }
     float length2 = 0.0f;
     for (int axis = 0; axis < N; ++axis)
     {
-      group.Bend[axis] -= parallel * group.U[axis];
+      group.Bend[axis] -= alongBend * group.U[axis];
+      group.BendStep[axis] -= alongBendStep * group.U[axis];
+      group.UStep[axis] -= alongStep * group.U[axis];
       length2 += group.Bend[axis] * group.Bend[axis];
     }
     group.BendLength = std::sqrt(length2);
-    const float direction = GetLargest(group, direction2) + std::abs(1.0f - norm);
-    const float bend = this->Setup.Curved ? GetLargest(group, bend2) + std::abs(parallel) : 0.0f;
+    const float direction =
+      GetLargest(group, direction2) + std::abs(1.0f - norm) + std::abs(alongStep);
+    const float bend = this->Setup.Curved ? GetLargest(group, bend2) : 0.0f;
     group.SetBounds(place, direction, bend, travel, this->IsOblique());
     return group.GetLargestWidth() - group.HalfWidth < LargestSpread;
   }
@@ -561,8 +577,7 @@ private:
     }
     const V across =
       hn::Sqrt(hn::Max(hn::NegMulAdd(result.Along, result.Along, Const(w2)), hn::Zero(DF())));
-    result.Width = hn::MulAdd(hn::Add(reach.LargestWidth, this->GetLooseness(reach)), across,
-      hn::Mul(Const(this->Setup.JitterRadius), hn::Abs(result.Along)));
+    result.Width = hn::Mul(hn::Add(reach.LargestWidth, this->GetLooseness(reach)), across);
     result.InverseAlong = Inverse(result.Along);
     // The window is a box of places; oblique indices need √3 times as many to cover it.
     const V box = hn::MulAdd(reach.Spread, Const(std::sqrt(w2)),
@@ -694,12 +709,16 @@ private:
   }
 
   /// Puts the corners of these rows on the list.
-  HWY_NOINLINE void AddRows(const Group<N>& group, const Reach<N>& reach, const std::int32_t* rowY,
-    const std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
+  HWY_NOINLINE void AddRows(const Group<N>& group, const Reach<N>& reach, std::int32_t* rowY,
+    std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
   {
     HWY_ALIGN std::int32_t firsts[Lanes];
     HWY_ALIGN std::int32_t lasts[Lanes];
     const IndexAxis axis = this->GetIndexAxis(reach, 0);
+    for (std::size_t i = rows; i % Lanes != 0; ++i)
+    {
+      rowY[i] = rowZ[i] = 0; // lanes that nobody looks at
+    }
     for (std::size_t i = 0; i < rows; i += Lanes)
     {
       V low = axis.BoxLow;
@@ -817,7 +836,10 @@ private:
       B = hn::MulAdd(t, te[i], B);
       C = hn::MulAdd(t, t, C);
     }
-    A = hn::Max(A, Const(1e-6f));
+    // A row along the flow: what the clamped coefficient adds must not count.
+    const V clamped = hn::Max(A, Const(1e-6f));
+    C = hn::NegMulAdd(hn::Sub(clamped, A), hn::Max(hn::Mul(low, low), hn::Mul(high, high)), C);
+    A = clamped;
     const V discriminant = hn::NegMulAdd(A, C, hn::Mul(B, B));
     const V inverseA = hn::Div(Const(1.0f), A);
     const V root = hn::Mul(hn::Sqrt(hn::Max(discriminant, hn::Zero(DF()))), inverseA);
@@ -1119,9 +1141,9 @@ private:
       }
       else
       {
-        for (std::uint64_t& all : bits)
+        for (std::size_t r = group.Begin; r < group.End; ++r)
         {
-          all |= ToBits(listed) << i;
+          bits[r] |= ToBits(listed) << i;
         }
       }
       this->Put(this->Describe(offset, hash), list, i);

@@ -613,15 +613,15 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
       {
         const OctaveSetup& octave = setup.Octaves[o];
         ImageOctave<N>& image = octaves[o];
-        const double places[3] = { 0.0, CellPlace(grid, 1, j, octave.CellsPerUnit),
+        const double rowPlace[3] = { 0.0, CellPlace(grid, 1, j, octave.CellsPerUnit),
           N == 3 ? CellPlace(grid, 2, k, octave.CellsPerUnit) : 0.0 };
         std::int64_t cell[3];
         V fraction[N];
         for (int axis = 1; axis < N; ++axis)
         {
-          const double floored = std::floor(places[axis] + setup.CellRounding);
+          const double floored = std::floor(rowPlace[axis] + setup.CellRounding);
           cell[axis] = static_cast<std::int64_t>(floored);
-          fraction[axis] = Const(static_cast<float>(places[axis] - floored));
+          fraction[axis] = Const(static_cast<float>(rowPlace[axis] - floored));
         }
         cell[2] = N == 3 ? cell[N - 1] : 0;
         const auto alongRow = [&](std::size_t i, Places<N>& places) HWY_ATTR

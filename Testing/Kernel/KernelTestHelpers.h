@@ -181,7 +181,10 @@ public:
 
 inline std::vector<std::int64_t> SimdLevels()
 {
-  return hwy::SupportedAndGeneratedTargets();
+  std::vector<std::int64_t> levels = hwy::SupportedAndGeneratedTargets();
+  // The kernel is not compiled for this one and would take the scalar level once more.
+  levels.erase(std::remove(levels.begin(), levels.end(), HWY_SSSE3), levels.end());
+  return levels;
 }
 
 /// Noise of an image whose vectors are a function of the world place of a sample.

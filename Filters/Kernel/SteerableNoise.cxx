@@ -52,7 +52,6 @@ NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field
 
   NoiseSetup setup;
   setup.Parameters = p;
-  setup.Dimension = dimension;
   double amplitude = 1.0;
   double frequency = 1.0;
   double power = 0.0;

@@ -54,7 +54,6 @@ struct OctaveSetup
 struct NoiseSetup
 {
   NoiseParameters Parameters;
-  int Dimension;
   std::vector<OctaveSetup> Octaves;
   /// 1 / √Σ amplitude².
   float OctaveScale;

@@ -144,11 +144,8 @@ bool IsUsable(vtkDataArray* array)
 /// Degenerate samples are counted by the kernel with the ghosts; these are the ghosts among them.
 vtkIdType CountDegenerateGhosts(const Block& block)
 {
-  vtkUnsignedCharArray* ghosts =
-    GetAttributes(block.DataSet, block.Cells)->GetArray(vtkDataSetAttributes::GhostArrayName())
-    ? vtkUnsignedCharArray::SafeDownCast(
-        GetAttributes(block.DataSet, block.Cells)->GetArray(vtkDataSetAttributes::GhostArrayName()))
-    : nullptr;
+  auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
+    GetAttributes(block.DataSet, block.Cells)->GetArray(vtkDataSetAttributes::GhostArrayName()));
   if (!ghosts || !noise::IsVector(block.Array->GetNumberOfComponents()))
   {
     return 0;

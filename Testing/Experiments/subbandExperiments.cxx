@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * The experiments of Goldberg, Zwicker and Durand, "Anisotropic Noise" (SIGGRAPH 2008), as numbers:
- * figures 3, 6 and 8, table 10 and the memory claim, each beside its limit. Returns 1 if one is missed.
- * Speed is printed, not judged. The pictures are made by subbandPictures.py.
+ * figures 3, 6 and 8 and the memory claim, each beside its limit. Returns 1 if one is missed. Table 10,
+ * speed, is in Testing/Benchmarks. The pictures are made by subbandPictures.py.
  */
 #include "SubbandFilters.h"
 #include "SubbandTiles.h"
@@ -16,11 +16,9 @@
 #include <unsupported/Eigen/FFT>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <functional>
 #include <vector>
 
 using namespace steerable;
@@ -262,78 +260,6 @@ void ZonePlate()
   }
 }
 
-/// Seconds of `work`, the fastest of some tries.
-double Time(const std::function<void()>& work)
-{
-  double best = 1e30;
-  for (int repeat = 0; repeat < 5; ++repeat)
-  {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    best = std::min(
-      best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  return best;
-}
-
-/// Table 10: what a scale costs. Points as a scan line by scan line picture, one thread.
-void Cost()
-{
-  std::printf("Table 10: noise of given weights, million points a second on one core\n");
-  std::printf("  %6s %8s %8s %8s\n", "scales", "K=4", "K=6", "K=8");
-  constexpr int side = 512;
-  constexpr std::size_t count = side * side;
-  std::vector<double> uv(2 * count);
-  for (std::size_t p = 0; p < count; ++p)
-  {
-    uv[2 * p] = 1.37 * (p % side) / side;
-    uv[2 * p + 1] = 1.37 * double(p / side) / side;
-  }
-  std::vector<float> noise(count);
-  for (int scales = 1; scales <= 5; ++scales)
-  {
-    std::printf("  %6d", scales);
-    for (const int orientations : { 4, 6, 8 })
-    {
-      SubbandParameters parameters;
-      parameters.Orientations = orientations;
-      parameters.Scales = scales;
-      const SubbandTiles tiles = MakeSubbandTiles(parameters);
-      const std::vector<float> weights(count * parameters.Components(), 1.0f);
-      const double seconds = Time(
-        [&] {
-          SumSubbands(
-            tiles, TileLookup::CatmullRom, count, uv.data(), weights.data(), noise.data());
-        });
-      std::printf(" %8.1f", 1e-6 * count / seconds);
-    }
-    std::printf("\n");
-  }
-  std::printf("Weights, million points a second on one core, K=8, 4 scales\n");
-  for (const auto& [name, method] :
-    { std::pair{ "least squares", WeightMethod::LeastSquares },
-      { "power matched", WeightMethod::PowerMatched }, { "heuristic", WeightMethod::Heuristic } })
-  {
-    SubbandWeightParameters parameters;
-    parameters.Method = method;
-    const SubbandWeights solver(parameters);
-    constexpr int points = 20000;
-    double gamma[48];
-    const double seconds = Time(
-      [&]
-      {
-        for (int n = 0; n < points; ++n)
-        {
-          const double stretch = 1.0 + n % 7;
-          Eigen::Matrix2d metric;
-          metric << stretch, 0.3, 0.3, 1.0 + n % 3;
-          solver.Compute(metric * 1e-3 * 4.0, gamma);
-        }
-      });
-    std::printf("  %-28s %8.2f\n", name, 1e-6 * points / seconds);
-  }
-}
-
 /// Four bands in bytes take 256 KB, and are good enough.
 void Memory()
 {
@@ -361,6 +287,5 @@ int main()
   Trapezoid();
   ZonePlate();
   Memory();
-  Cost();
   return Missed ? 1 : 0;
 }

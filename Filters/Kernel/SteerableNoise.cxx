@@ -109,7 +109,7 @@ NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field
   {
     for (int j = 0; j < 3; ++j)
     {
-      setup.LatticeSteps[i][j] = steps(i, j);
+      setup.LatticeSteps[i][j] = static_cast<float>(steps(i, j));
       setup.LatticeIndices[i][j] = indices(i, j);
     }
   }

@@ -86,22 +86,23 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
 }
 
 /**
- * Unit vectors of a block projected on the tangent planes of its normals, in double since a steep
+ * Unit vectors from `at` on projected on the tangent planes of its normals, in double since a steep
  * vector leaves little; a sample without a normal is not on a surface and keeps its vector.
  */
 void ProjectOnSurface(
-  const float* vectors, const float* normals, std::size_t count, MetricBlock& block)
+  const float* vectors, const float* normals, std::size_t at, std::size_t count, MetricBlock& block)
 {
   for (std::size_t i = 0; i < count; ++i)
   {
+    const std::size_t to = at + i;
     const Vector<3> normal = Eigen::Map<const Eigen::Vector3f>(normals + 3 * i).cast<double>();
     const double length = normal.norm();
     const bool onSurface = length > 0.0 && std::isfinite(length);
     const Vector<3> m = onSurface ? Vector<3>(normal / length) : Vector<3>::Zero();
-    Vector<3> u(block.U[0][i], block.U[1][i], block.U[2][i]);
-    if (onSurface && block.Length[i] > 1e-15f && block.Length[i] < 1e15f)
+    Vector<3> u(block.U[0][to], block.U[1][to], block.U[2][to]);
+    if (onSurface && block.Length[to] > 1e-15f && block.Length[to] < 1e15f)
     {
-      u = Eigen::Map<const Eigen::Vector3f>(vectors + 3 * i).cast<double>() / block.Length[i];
+      u = Eigen::Map<const Eigen::Vector3f>(vectors + 3 * i).cast<double>() / block.Length[to];
     }
     if (onSurface && !u.isZero(0.0))
     {
@@ -112,23 +113,23 @@ void ProjectOnSurface(
     }
     for (int axis = 0; axis < 3; ++axis)
     {
-      block.U[axis][i] = static_cast<float>(u[axis]);
-      block.M[axis][i] = static_cast<float>(m[axis]);
+      block.U[axis][to] = static_cast<float>(u[axis]);
+      block.M[axis][to] = static_cast<float>(m[axis]);
     }
   }
 }
 
-/// Eigenvalues of the metrics of the unit vectors in a block, and what stands for missing ones.
+/// Eigenvalues of the metrics of the unit vectors from `at` on, and what stands for missing ones.
 template <int N>
 HWY_NOINLINE void MetricsOfDirections(
-  const NoiseSetup& setup, MetricBlock& block, std::size_t count)
+  const NoiseSetup& setup, MetricBlock& block, std::size_t at, std::size_t count)
 {
   const NoiseParameters& p = setup.Parameters;
   const EigenvalueRange range = VectorEigenvalues(p, N);
   const double surfaceAcross = SurfaceEigenvalues(p).Across;
   const V zero = Const(0.0f);
   const V one = Const(1.0f);
-  for (std::size_t i = 0; i < count; i += Lanes)
+  for (std::size_t i = at; i < at + count; i += Lanes)
   {
     const V u0 = Load(block.U[0] + i);
     V some = hn::Or(u0, Load(block.U[1] + i));
@@ -167,17 +168,19 @@ HWY_NOINLINE void MetricsOfDirections(
 
 /// Adds u_axis ∂u/∂axis to the bend, the neighbours turned to the side of the middle one.
 template <int N>
-HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t count, int axis,
-  const float* const (&before)[3], const float* const (&after)[3], const float* scale, bool perLane)
+HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t at, std::size_t count, int axis,
+  const std::array<const float*, 3>& before, const std::array<const float*, 3>& after,
+  const float* scale, bool perLane)
 {
   for (std::size_t i = 0; i < count; i += Lanes)
   {
+    const std::size_t to = at + i;
     V u[N];
     V a[N];
     V c[N];
     for (int k = 0; k < N; ++k)
     {
-      u[k] = Load(block.U[k] + i);
+      u[k] = Load(block.U[k] + to);
       a[k] = Load(before[k] + i);
       c[k] = Load(after[k] + i);
     }
@@ -193,8 +196,8 @@ HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t count, int axis,
     {
       const V fromA = hn::IfThenElse(noneA, u[k], hn::Xor(a[k], hn::And(signA, mask)));
       const V fromC = hn::IfThenElse(noneC, u[k], hn::Xor(c[k], hn::And(signC, mask)));
-      const V sum = hn::MulAdd(factor, hn::Sub(fromC, fromA), Load(block.Bend[k] + i));
-      hn::StoreU(sum, DF(), block.Bend[k] + i);
+      const V sum = hn::MulAdd(factor, hn::Sub(fromC, fromA), Load(block.Bend[k] + to));
+      hn::StoreU(sum, DF(), block.Bend[k] + to);
     }
   }
 }
@@ -221,10 +224,10 @@ HWY_NOINLINE void CopyCurvature(
   }
 }
 
-/// Repeats the last sample behind the end, so that the lanes there are like their neighbours.
-void PadTail(MetricBlock& block, std::size_t count)
+/// Repeats the sample before `end` behind it, so that the lanes there are like their neighbours.
+void PadTail(MetricBlock& block, std::size_t end)
 {
-  const auto pad = [count](auto* array) { std::fill_n(array + count, Lanes, array[count - 1]); };
+  const auto pad = [end](auto* array) { std::fill_n(array + end, Lanes, array[end - 1]); };
   for (float* array : { block.U[0], block.U[1], block.U[2], block.M[0], block.M[1], block.M[2],
          block.ULow[0], block.ULow[1], block.Bend[0], block.Bend[1], block.Bend[2], block.Along,
          block.Across, block.Second, block.Sense })
@@ -236,31 +239,32 @@ void PadTail(MetricBlock& block, std::size_t count)
 /// Tensors go one by one through Eigen's solver.
 template <int N>
 void MetricsOfTensors(
-  const NoiseSetup& setup, const float* tuples, std::size_t count, MetricBlock& block)
+  const NoiseSetup& setup, const float* tuples, std::size_t at, std::size_t count, MetricBlock& block)
 {
   for (std::size_t i = 0; i < count; ++i)
   {
+    const std::size_t to = at + i;
     const Matrix<N> tensor = TensorOf<N>(tuples + 6 * i);
     const AxialMetric<N> metric = MetricFromTensor<N>(setup.Parameters, tensor);
     for (int axis = 0; axis < N; ++axis)
     {
-      block.U[axis][i] = static_cast<float>(metric.Direction[axis]);
-      block.M[axis][i] = static_cast<float>(metric.SecondAxis[axis]);
+      block.U[axis][to] = static_cast<float>(metric.Direction[axis]);
+      block.M[axis][to] = static_cast<float>(metric.SecondAxis[axis]);
       if constexpr (N == 2)
       {
-        block.ULow[axis][i] = LowPart(metric.Direction[axis]);
+        block.ULow[axis][to] = LowPart(metric.Direction[axis]);
       }
     }
-    block.Along[i] = static_cast<float>(metric.Along);
-    block.Across[i] = static_cast<float>(metric.Across);
-    block.Second[i] = static_cast<float>(metric.Second);
-    block.Sense[i] = metric.Degenerate ? 0.0f : 1.0f;
+    block.Along[to] = static_cast<float>(metric.Along);
+    block.Across[to] = static_cast<float>(metric.Across);
+    block.Second[to] = static_cast<float>(metric.Second);
+    block.Sense[to] = metric.Degenerate ? 0.0f : 1.0f;
     for (int axis = 0; axis < N && setup.Curved; ++axis)
     {
-      block.Bend[axis][i] *= static_cast<float>(metric.Clarity);
+      block.Bend[axis][to] *= static_cast<float>(metric.Clarity);
     }
     const double norm = tensor.norm();
-    block.Length[i] = std::isfinite(norm) ? static_cast<float>(norm) : 0.0f;
+    block.Length[to] = std::isfinite(norm) ? static_cast<float>(norm) : 0.0f;
   }
 }
 
@@ -286,32 +290,32 @@ void Directions(const NoiseSetup& setup, const Field& field, std::size_t first, 
   }
 }
 
-/// Axes and eigenvalues of a block, once its bend is known. True: all have a direction and the same
+/// Axes and eigenvalues from `at` on, once the bend is known. True: all have a direction and the same
 /// strength, and none of their eigenvalues are written.
 template <int N>
-bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t count,
-  MetricBlock& block)
+bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t at,
+  std::size_t count, MetricBlock& block)
 {
   if (field.Tensors)
   {
-    MetricsOfTensors<N>(setup, field.Tensors->Read(first, count, block.Tuples), count, block);
-    PadTail(block, count);
+    MetricsOfTensors<N>(setup, field.Tensors->Read(first, count, block.Tuples), at, count, block);
+    PadTail(block, at + count);
     return false;
   }
-  float* const unit[3] = { block.U[0], block.U[1], block.U[2] };
+  float* const unit[3] = { block.U[0] + at, block.U[1] + at, block.U[2] + at };
   const float* vectors = field.Vectors->Read(first, count, block.Tuples);
   if (setup.Uniform && UnitVectors<N, true>(vectors, count, unit))
   {
     return true;
   }
-  float* const low[2] = { block.ULow[0], block.ULow[1] };
-  UnitVectors<N, false>(vectors, count, unit, block.Length, low);
+  float* const low[2] = { block.ULow[0] + at, block.ULow[1] + at };
+  UnitVectors<N, false>(vectors, count, unit, block.Length + at, low);
   if (field.Normals)
   {
     const float* normals = field.Normals->Read(first, count, block.Tuples + 3 * BlockRoom);
-    ProjectOnSurface(vectors, normals, count, block);
+    ProjectOnSurface(vectors, normals, at, count, block);
   }
-  MetricsOfDirections<N>(setup, block, count);
-  PadTail(block, count);
+  MetricsOfDirections<N>(setup, block, at, count);
+  PadTail(block, at + count);
   return false;
 }

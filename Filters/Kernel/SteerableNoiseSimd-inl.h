@@ -92,7 +92,22 @@ struct Sums
   V Variance;
 };
 
-WALK_INLINE V Normalized(const NoiseSetup& setup, const Sums& sums)
+/// Variance of what a surflet is multiplied by: a gradient's component, a value, or whether there is one.
+inline float VarianceShare(const NoiseParameters& p, int dimension)
+{
+  switch (p.Surflet)
+  {
+    case Basis::Value:
+      return 1.0f / 3.0f;
+    case Basis::Streaks:
+      return static_cast<float>(p.Density);
+    case Basis::Gradient:
+    default:
+      return static_cast<float>(GradientVariance(p.Gradients, dimension));
+  }
+}
+
+WALK_INLINE V Normalized(const NoiseSetup& setup, int dimension, const Sums& sums)
 {
   switch (setup.Parameters.Normalize)
   {
@@ -100,96 +115,23 @@ WALK_INLINE V Normalized(const NoiseSetup& setup, const Sums& sums)
       return hn::IfThenElseZero(
         hn::Gt(sums.Weight, Const(0.0f)), hn::Div(sums.Noise, hn::Max(sums.Weight, Const(1e-30f))));
     case Normalization::UnitVariance:
-      return hn::Div(sums.Noise, hn::Sqrt(hn::Add(sums.Variance, Const(1e-3f))));
+    {
+      const V share = Const(VarianceShare(setup.Parameters, dimension));
+      return hn::Div(sums.Noise, hn::Sqrt(hn::MulAdd(share, sums.Variance, Const(1e-3f))));
+    }
     case Normalization::None:
     default:
       return sums.Noise;
   }
 }
 
-/// The metric of the lanes, in registers.
+/// Where the samples of a register are in the lattice of an octave: cells as the hash takes them, and
+/// fractions from their corners.
 template <int N>
-struct Frame
+struct Places
 {
-  V U[N];
-  /// u in two parts, see Walk::AddSurflet (2D).
-  V UHigh[2];
-  V ULow[2];
-  V M[N];
-  V Along;
-  V Across;
-  V Second;
-  V Bend[N];
-  /// The bend along the normal n = (-u_y, u_x), all there is of it in 2D.
-  V BendAcross;
-  V Sense;
-
-  WALK_INLINE Frame() {}
-  WALK_INLINE Frame(
-    const NoiseSetup& setup, const MetricBlock& block, std::size_t i, float cellSize)
-    : Along(Load(block.Along + i))
-    , Across(Load(block.Across + i))
-    , Second(Across)
-    , BendAcross(hn::Zero(DF()))
-    , Sense(Load(block.Sense + i))
-  {
-    for (int axis = 0; axis < N; ++axis)
-    {
-      this->U[axis] = Load(block.U[axis] + i);
-      this->M[axis] = hn::Zero(DF());
-      this->Bend[axis] = hn::Zero(DF());
-    }
-    if constexpr (N == 2)
-    {
-      for (int axis = 0; axis < 2; ++axis)
-      {
-        this->UHigh[axis] = HighPart(this->U[axis]);
-        this->ULow[axis] = Load(block.ULow[axis] + i);
-      }
-    }
-    if (setup.Biaxial)
-    {
-      this->Second = Load(block.Second + i);
-      for (int axis = 0; axis < N; ++axis)
-      {
-        this->M[axis] = Load(block.M[axis] + i);
-      }
-    }
-    if (setup.Curved)
-    {
-      this->ApplyCurvature(block, i, cellSize);
-    }
-  }
-
-  /// As steerable::ApplyCurvature.
-  WALK_INLINE void ApplyCurvature(const MetricBlock& block, std::size_t i, float cellSize)
-  {
-    for (int axis = 0; axis < N; ++axis)
-    {
-      this->Bend[axis] = hn::Mul(hn::Mul(Load(block.Bend[axis] + i), Const(cellSize)), this->Sense);
-    }
-    const V parallel = Dot(this->Bend, this->U);
-    for (int axis = 0; axis < N; ++axis)
-    {
-      this->Bend[axis] = hn::NegMulAdd(parallel, this->U[axis], this->Bend[axis]);
-    }
-    const V one = Const(1.0f);
-    const V length2 = Dot(this->Bend, this->Bend);
-    const V clamp = hn::Div(one, hn::Sqrt(hn::Max(length2, one)));
-    for (int axis = 0; axis < N; ++axis)
-    {
-      this->Bend[axis] = hn::Mul(this->Bend[axis], clamp);
-    }
-    if constexpr (N == 2)
-    {
-      this->BendAcross = hn::MulSub(this->U[0], this->Bend[1], hn::Mul(this->U[1], this->Bend[0]));
-    }
-    const V squared = hn::Min(length2, one);
-    const V keeps = hn::Sub(one, squared); // CurvatureKeeps
-    this->Along = hn::Max(this->Along, squared);
-    this->Across = hn::MulAdd(keeps, hn::Sub(this->Across, one), one);
-    this->Second = hn::MulAdd(keeps, hn::Sub(this->Second, one), one);
-  }
+  VU Cell[N];
+  V Fraction[N];
 };
 
 #include "SteerableNoiseCells-inl.h"
@@ -216,40 +158,89 @@ WALK_INLINE void AddOctave(
   hn::StoreU(noise, DF(), block.Noise + i);
 }
 
-/// One octave of a block; `getPlaces(i, places)` tells where the register from sample i is.
-template <int N, bool Variant, bool Aligned, class GetPlaces>
-WALK_INLINE void AddWalk(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
-  std::size_t count, std::uint64_t& visited, GetPlaces&& getPlaces)
+/// As steerable::ApplyCurvature: eigenvalues and bend of samples [at, at + count) in one octave.
+template <int N>
+HWY_NOINLINE void BendMetrics(const NoiseSetup& setup, const OctaveSetup& octave, std::size_t at,
+  std::size_t count, MetricBlock& block)
 {
-  Walk<N, Variant, Aligned> walk(setup, octave);
-  for (std::size_t begin = 0; begin < count; begin += TileSamples)
+  for (std::size_t i = at; i < at + count; i += Lanes)
   {
-    const std::size_t end = std::min(count, begin + TileSamples);
-    for (std::size_t i = begin; i < end; i += Lanes)
+    const V one = Const(1.0f);
+    const V scale = hn::Mul(Load(block.Sense + i), Const(octave.CellSize));
+    V bend[N];
+    V u[N];
+    for (int axis = 0; axis < N; ++axis)
     {
-      Places<N> places;
-      getPlaces(i, places);
-      walk.SetRegister((i - begin) / Lanes, block, i, places);
+      bend[axis] = hn::Mul(Load(block.Bend[axis] + i), scale);
+      u[axis] = Load(block.U[axis] + i);
     }
-    visited += walk.Evaluate(end - begin);
-    for (std::size_t i = begin; i < end; i += Lanes)
+    const V parallel = Dot(bend, u);
+    for (int axis = 0; axis < N; ++axis)
     {
-      AddOctave(setup, octave, block, i, walk.GetNoise((i - begin) / Lanes));
+      bend[axis] = hn::NegMulAdd(parallel, u[axis], bend[axis]);
+    }
+    const V length2 = Dot(bend, bend);
+    const V clamp = hn::Div(one, hn::Sqrt(hn::Max(length2, one)));
+    for (int axis = 0; axis < N; ++axis)
+    {
+      hn::StoreU(hn::Mul(bend[axis], clamp), DF(), block.ClampedBend[axis] + i);
+    }
+    const V squared = hn::Min(length2, one);
+    const V keeps = hn::Sub(one, squared); // CurvatureKeeps
+    const auto keep = [&](const float* eigenvalue) HWY_ATTR
+    { return hn::MulAdd(keeps, hn::Sub(Load(eigenvalue + i), one), one); };
+    hn::StoreU(hn::Max(Load(block.Along + i), squared), DF(), block.BentAlong + i);
+    hn::StoreU(keep(block.Across), DF(), block.BentAcross + i);
+    if (setup.Biaxial)
+    {
+      hn::StoreU(keep(block.Second), DF(), block.BentSecond + i);
     }
   }
 }
 
-template <int N, bool Aligned, class GetPlaces>
-WALK_INLINE void AddWalks(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
-  std::size_t count, std::uint64_t& visited, GetPlaces&& getPlaces)
+/// One tile of an octave; its registers are set.
+template <class Walk>
+WALK_INLINE void AddTile(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
+  Walk& walk, std::size_t registers, std::uint64_t& visited)
 {
-  if (setup.Variant)
+  visited += walk.Evaluate(registers);
+  for (std::size_t r = 0; r < registers; ++r)
   {
-    AddWalk<N, true, Aligned>(setup, octave, block, count, visited, getPlaces);
+    AddOctave(setup, octave, block, walk.GetFirst(r), walk.GetNoise(r));
   }
-  else
+}
+
+/// One octave of the samples at the beginning of a block, whose places are known.
+template <int N, bool Variant>
+HWY_NOINLINE void WalkPoints(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
+  std::size_t count, std::uint64_t& visited)
+{
+  Walk<N, Variant, false> walk(setup, octave, block);
+  std::size_t registers = 0;
+  for (std::size_t i = 0; i < count; i += Lanes)
   {
-    AddWalk<N, false, Aligned>(setup, octave, block, count, visited, getPlaces);
+    walk.SetRegister(registers++, i, std::min(Lanes, count - i));
+    if (registers == TileRegisters || i + Lanes >= count)
+    {
+      AddTile(setup, octave, block, walk, registers, visited);
+      registers = 0;
+    }
+  }
+}
+
+/// One octave of a patch of an image, whose places are known.
+template <int N, bool Variant>
+HWY_NOINLINE void WalkPatch(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
+  std::size_t rows, std::size_t columns, std::uint64_t& visited)
+{
+  Walk<N, Variant, !Variant> walk(setup, octave, block);
+  for (std::size_t i = 0; i < columns; i += Lanes)
+  {
+    for (std::size_t r = 0; r < rows; ++r)
+    {
+      walk.SetRegister(r, r * PatchColumns + i, std::min(Lanes, columns - i));
+    }
+    AddTile(setup, octave, block, walk, rows, visited);
   }
 }
 
@@ -294,15 +285,17 @@ WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, Me
 
 #include "SteerableNoiseMetrics-inl.h"
 
-/// Scales, masks, counts and hands out the noise of a block.
-void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t count, bool uniform,
-  float* noise, EvaluationCounts& counts)
+/// Masks, counts and hands out the noise of samples [at, at + count) of a block.
+void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t at, std::size_t count,
+  bool uniform, float* noise, EvaluationCounts& counts)
 {
+  float* const from = block.Noise + at;
   if (uniform)
   {
-    std::copy(block.Noise, block.Noise + count, noise);
+    std::copy(from, from + count, noise);
     return;
   }
+  float* const there = block.Sense + at;
   const auto threshold = static_cast<float>(setup.Parameters.MaskThreshold);
   V senses = hn::Zero(DF());
   HWY_ALIGN float sense[Lanes];
@@ -310,19 +303,19 @@ void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t count, bool
   {
     for (std::size_t i = 0; i < count; ++i)
     {
-      if (block.Length[i] <= threshold)
+      if (block.Length[at + i] <= threshold)
       {
-        block.Noise[i] = 0.0f;
+        from[i] = 0.0f;
         ++counts.Stagnant;
-        block.Sense[i] = 1.0f; // counted once, as stagnant
+        there[i] = 1.0f; // counted once, as stagnant
       }
     }
   }
   std::size_t i = 0;
   for (; i + Lanes <= count; i += Lanes)
   {
-    senses = hn::Add(senses, Load(block.Sense + i));
-    hn::StoreU(Load(block.Noise + i), DF(), noise + i);
+    senses = hn::Add(senses, Load(there + i));
+    hn::StoreU(Load(from + i), DF(), noise + i);
   }
   hn::Store(senses, DF(), sense);
   float directed = 0.0f;
@@ -332,16 +325,16 @@ void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t count, bool
   }
   for (; i < count; ++i)
   {
-    directed += block.Sense[i];
-    noise[i] = block.Noise[i];
+    directed += there[i];
+    noise[i] = from[i];
   }
   counts.Degenerate += count - static_cast<std::size_t>(directed);
 }
 
-/// Cells and fractions of a block of positions: floor and difference in double, the rest in float.
+/// Cells and fractions of samples from `at` on: floor and difference in double, the rest in float.
 template <int N>
 HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octave,
-  const double* positions, std::size_t count, MetricBlock& block)
+  const double* positions, std::size_t at, std::size_t count, MetricBlock& block)
 {
   constexpr std::size_t half = hn::MaxLanes(DD());
   HWY_ALIGN double tail[3 * half] = {};
@@ -381,7 +374,7 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
       // A place that is not finite is cell 0: it must not spoil its neighbours' walk.
       p[axis] = hn::IfThenElseZero(hn::Lt(hn::Abs(p[axis]), hn::Set(DD(), FarthestCell)), p[axis]);
       VD cell = hn::Floor(hn::Add(p[axis], rounding));
-      hn::StoreU(hn::DemoteTo(DFH(), hn::Sub(p[axis], cell)), DFH(), block.Fraction[axis] + i);
+      hn::StoreU(hn::DemoteTo(DFH(), hn::Sub(p[axis], cell)), DFH(), block.Fraction[axis] + at + i);
       if (octave.Period[axis] > 0)
       {
         const VD period = hn::Set(DD(), static_cast<double>(octave.Period[axis]));
@@ -389,14 +382,15 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
       }
       const hn::Rebind<std::uint64_t, DD> d64;
       const hn::Rebind<std::uint32_t, DD> d32;
-      hn::StoreU(
-        hn::TruncateTo(d32, hn::BitCast(d64, hn::Add(cell, toInteger))), d32, block.Cell[axis] + i);
+      hn::StoreU(hn::TruncateTo(d32, hn::BitCast(d64, hn::Add(cell, toInteger))), d32,
+        block.Cell[axis] + at + i);
     }
   }
   for (int axis = 0; axis < N; ++axis)
   {
-    std::fill_n(block.Cell[axis] + count, Lanes, block.Cell[axis][count - 1]);
-    std::fill_n(block.Fraction[axis] + count, Lanes, block.Fraction[axis][count - 1]);
+    const std::size_t end = at + count;
+    std::fill_n(block.Cell[axis] + end, Lanes, block.Cell[axis][end - 1]);
+    std::fill_n(block.Fraction[axis] + end, Lanes, block.Fraction[axis][end - 1]);
   }
 }
 
@@ -405,31 +399,33 @@ template <int N>
 void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double* positions,
   std::size_t count, bool uniform, MetricBlock& block, std::uint64_t& visited)
 {
-  LocatePoints<N>(setup, octave, positions, count, block);
-  const auto anywhere = [&](std::size_t i, Places<N>& places) HWY_ATTR
-  {
-    for (int axis = 0; axis < N; ++axis)
-    {
-      places.Cell[axis] = hn::LoadU(DU(), block.Cell[axis] + i);
-      places.Fraction[axis] = Load(block.Fraction[axis] + i);
-    }
-  };
+  LocatePoints<N>(setup, octave, positions, 0, count, block);
   if (setup.SingleCell)
   {
     LaneCorners<N> corners(octave);
     AddCells<N>(setup, octave, block, count, uniform, corners, visited,
       [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
       {
-        anywhere(i, places);
         for (int axis = 0; axis < N; ++axis)
         {
+          places.Cell[axis] = hn::LoadU(DU(), block.Cell[axis] + i);
+          places.Fraction[axis] = Load(block.Fraction[axis] + i);
           near[axis] = PlainQuinticFade(places.Fraction[axis]);
         }
       });
+    return;
+  }
+  if (setup.Curved)
+  {
+    BendMetrics<N>(setup, octave, 0, count, block);
+  }
+  if (setup.Variant)
+  {
+    WalkPoints<N, true>(setup, octave, block, count, visited);
   }
   else
   {
-    AddWalks<N, false>(setup, octave, block, count, visited, anywhere);
+    WalkPoints<N, false>(setup, octave, block, count, visited);
   }
 }
 
@@ -503,62 +499,178 @@ inline float InCells(double curvature, const NoiseSetup& setup)
   return static_cast<float>(std::min(1e15, std::max(-1e15, inCells)));
 }
 
-template <int N>
-void ImageCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field& field,
-  const std::vector<float>& scaleX, std::int64_t i0, std::size_t count, std::int64_t j,
-  std::int64_t k, MetricBlock& block)
+/// Samples of an image that go through the stages together: rows of one slice, the first from this on.
+struct Patch
 {
-  const std::int64_t nx = grid.Dimensions[0];
-  const std::int64_t ny = grid.Dimensions[1];
-  const auto flat = [&](std::int64_t i, std::int64_t jj, std::int64_t kk)
-  { return static_cast<std::size_t>((kk * ny + jj) * nx + i); };
-  // The row itself with `stride` samples to either side; beyond the ends the last one again.
+  std::int64_t First[3];
+  std::size_t Columns;
+  std::size_t Rows;
+
+  /// Where a row begins in the block.
+  static std::size_t At(std::size_t row) { return row * PatchColumns; }
+};
+
+/// Directions u of a patch and their bend, without the parts of it that BendMetrics removes.
+template <int N>
+void PatchCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field& field,
+  const std::vector<float>& scaleX, const Patch& patch, MetricBlock& block)
+{
+  const auto& size = grid.Dimensions;
   const std::int64_t stride = grid.CurvatureStride;
-  const auto samples = static_cast<std::int64_t>(count);
+  const auto columns = static_cast<std::int64_t>(patch.Columns);
+  const auto rows = static_cast<std::int64_t>(patch.Rows);
+  const std::int64_t i0 = patch.First[0];
+  // The rows with `stride` samples to either side; beyond the ends the last one again.
   const std::int64_t left = std::min(stride, i0);
-  const std::int64_t right = std::min(stride, nx - i0 - samples);
-  float* own[3];
-  float* from[3];
-  for (int axis = 0; axis < 3; ++axis)
+  const std::int64_t right = std::min(stride, size[0] - i0 - columns);
+  const auto readRow = [&](std::int64_t slot, std::int64_t j, std::int64_t k, std::int64_t before,
+                         std::int64_t after)
   {
-    own[axis] = block.Neighbor[0][axis] + stride;
-    from[axis] = own[axis] - left;
-  }
-  Directions<N>(setup, field, flat(i0 - left, j, k),
-    static_cast<std::size_t>(samples + left + right), block, { from[0], from[1], from[2] });
-  for (int axis = 0; axis < N; ++axis)
+    float* to[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      to[axis] = block.UnitRows[slot][axis] + stride - before;
+    }
+    const auto first = static_cast<std::size_t>((k * size[1] + j) * size[0] + i0 - before);
+    Directions<N>(setup, field, first, static_cast<std::size_t>(columns + before + after), block,
+      { to[0], to[1], to[2] });
+  };
+  const auto getRow = [&](std::int64_t slot, std::int64_t shift)
   {
-    std::fill(own[axis] - stride, own[axis] - left, own[axis][-left]);
-    std::fill(
-      own[axis] + samples + right, own[axis] + samples + stride, own[axis][samples + right - 1]);
-    std::copy(own[axis], own[axis] + samples, block.U[axis]);
-    std::fill(block.Bend[axis], block.Bend[axis] + count + Lanes, 0.0f);
-  }
-  if (nx > 1)
+    const auto& unit = block.UnitRows[slot];
+    return std::array<const float*, 3>{ unit[0] + stride + shift, unit[1] + stride + shift,
+      unit[2] + stride + shift };
+  };
+
+  for (std::int64_t r = 0; r < rows; ++r)
   {
-    AddDerivative<N>(block, count, 0, { own[0] - stride, own[1] - stride, own[2] - stride },
-      { own[0] + stride, own[1] + stride, own[2] + stride }, scaleX.data() + i0, true);
+    const std::size_t at = Patch::At(r);
+    readRow(r, patch.First[1] + r, patch.First[2], left, right);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      float* const row = block.UnitRows[r][axis] + stride;
+      std::fill(row - stride, row - left, row[-left]);
+      std::fill(row + columns + right, row + columns + stride, row[columns + right - 1]);
+      std::copy(row, row + columns, block.U[axis] + at);
+      std::fill_n(block.Bend[axis] + at, patch.Columns + Lanes, 0.0f);
+    }
+    if (size[0] > 1)
+    {
+      AddDerivative<N>(
+        block, at, patch.Columns, 0, getRow(r, -stride), getRow(r, stride), scaleX.data() + i0, true);
+    }
   }
-  const std::int64_t place[3] = { i0, j, k };
   for (int axis = 1; axis < N; ++axis)
   {
-    const std::int64_t low = std::max<std::int64_t>(place[axis] - stride, 0);
-    const std::int64_t high =
-      std::min<std::int64_t>(place[axis] + stride, grid.Dimensions[axis] - 1);
-    if (low == high)
+    // Slot of the row at these indices: that of the patch, or `spare` with the row read into it.
+    const auto find = [&](std::int64_t j, std::int64_t k, std::int64_t spare)
     {
+      if (k == patch.First[2] && j >= patch.First[1] && j < patch.First[1] + rows)
+      {
+        return j - patch.First[1];
+      }
+      readRow(spare, j, k, 0, 0);
+      return spare;
+    };
+    for (std::int64_t r = 0; r < rows; ++r)
+    {
+      std::int64_t low[3] = { 0, patch.First[1] + r, patch.First[2] };
+      std::int64_t high[3] = { 0, patch.First[1] + r, patch.First[2] };
+      low[axis] = std::max<std::int64_t>(low[axis] - stride, 0);
+      high[axis] = std::min(high[axis] + stride, size[axis] - 1);
+      const std::int64_t span = high[axis] - low[axis];
+      if (span > 0)
+      {
+        const std::int64_t before = find(low[1], low[2], rows);
+        const std::int64_t after = find(high[1], high[2], rows + 1);
+        const float scale = InCells(1.0 / (static_cast<double>(span) * grid.Spacing[axis]), setup);
+        AddDerivative<N>(block, Patch::At(r), patch.Columns, axis, getRow(before, 0),
+          getRow(after, 0), &scale, false);
+      }
+    }
+  }
+}
+
+/// Cells and fractions of a patch in an octave.
+template <int N>
+void LocatePatch(const NoiseSetup& setup, const ImageGrid& grid, const OctaveSetup& octave,
+  const ImageOctave<N>& image, const Patch& patch, MetricBlock& block)
+{
+  const auto place = [&](int axis, std::size_t index, double cellsPerUnit)
+  {
+    return CellPlace(
+      grid, axis, patch.First[axis] + static_cast<std::int64_t>(index), cellsPerUnit);
+  };
+  for (std::size_t r = 0; r < patch.Rows; ++r)
+  {
+    const std::size_t at = Patch::At(r);
+    const std::size_t row[3] = { 0, r, 0 };
+    if (setup.Parameters.Grid == Lattice::Simplicial)
+    {
+      for (std::size_t i = 0; i < patch.Columns; ++i)
+      {
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          block.Positions[3 * i + axis] = place(axis, axis == 0 ? i : row[axis], 1.0);
+        }
+      }
+      LocatePoints<N>(setup, octave, block.Positions, at, patch.Columns, block);
       continue;
     }
-    float* const before[3] = { block.Neighbor[0][0], block.Neighbor[0][1], block.Neighbor[0][2] };
-    float* const after[3] = { block.Neighbor[1][0], block.Neighbor[1][1], block.Neighbor[1][2] };
-    Directions<N>(
-      setup, field, flat(i0, axis == 1 ? low : j, axis == 2 ? low : k), count, block, before);
-    Directions<N>(
-      setup, field, flat(i0, axis == 1 ? high : j, axis == 2 ? high : k), count, block, after);
-    const float scale =
-      InCells(1.0 / (static_cast<double>(high - low) * grid.Spacing[axis]), setup);
-    AddDerivative<N>(block, count, axis, { before[0], before[1], before[2] },
-      { after[0], after[1], after[2] }, &scale, false);
+    const std::size_t room = patch.Columns + Lanes;
+    std::copy_n(image.Column.data() + patch.First[0], room, block.Cell[0] + at);
+    std::copy_n(image.Fraction.data() + patch.First[0], room, block.Fraction[0] + at);
+    for (int axis = 1; axis < N; ++axis)
+    {
+      const double y = place(axis, row[axis], octave.CellsPerUnit);
+      const double cell = std::floor(y + setup.CellRounding);
+      std::fill_n(block.Cell[axis] + at, room,
+        WrapToPeriod(static_cast<std::int64_t>(cell), octave.Period[axis]));
+      std::fill_n(block.Fraction[axis] + at, room, static_cast<float>(y - cell));
+    }
+  }
+}
+
+/// One octave of a row of an image at Quality 0 without extensions.
+template <int N>
+void AddRowOfCells(const NoiseSetup& setup, const ImageGrid& grid, const OctaveSetup& octave,
+  ImageOctave<N>& image, const Patch& patch, bool uniform, MetricBlock& block,
+  std::uint64_t& visited)
+{
+  std::int64_t cell[3] = { 0, 0, 0 };
+  V fraction[N];
+  V window[N];
+  for (int axis = 1; axis < N; ++axis)
+  {
+    const double place = CellPlace(grid, axis, patch.First[axis], octave.CellsPerUnit);
+    const double floored = std::floor(place);
+    cell[axis] = static_cast<std::int64_t>(floored);
+    fraction[axis] = Const(static_cast<float>(place - floored));
+    window[axis] = PlainQuinticFade(fraction[axis]);
+  }
+  const auto getPlaces = [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
+  {
+    const std::size_t column = patch.First[0] + i;
+    places.Cell[0] = hn::LoadU(DU(), image.Column.data() + column);
+    places.Fraction[0] = Load(image.Fraction.data() + column);
+    near[0] = Load(image.Window.data() + column);
+    for (int axis = 1; axis < N; ++axis)
+    {
+      places.Cell[axis] = hn::Set(DU(), WrapToPeriod(cell[axis], octave.Period[axis]));
+      places.Fraction[axis] = fraction[axis];
+      near[axis] = window[axis];
+    }
+  };
+  if (image.Rows)
+  {
+    image.Rows->MoveTo(cell[1], cell[2]);
+    RowCorners<N> corners(*image.Rows);
+    AddCells<N>(setup, octave, block, patch.Columns, uniform, corners, visited, getPlaces);
+  }
+  else
+  {
+    LaneCorners<N> corners(octave);
+    AddCells<N>(setup, octave, block, patch.Columns, uniform, corners, visited, getPlaces);
   }
 }
 
@@ -568,6 +680,7 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
 {
   EvaluationCounts counts;
   const std::int64_t nx = grid.Dimensions[0];
+  const std::int64_t ny = grid.Dimensions[1];
   if (nx == 0 || rowBegin >= rowEnd)
   {
     return counts;
@@ -592,96 +705,54 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
     }
   }
 
-  for (std::size_t row = rowBegin; row < rowEnd; ++row)
+  const std::int64_t mostRows = setup.SingleCell ? 1 : TileRegisters;
+  const std::int64_t mostColumns = setup.SingleCell ? BlockSize : PatchColumns;
+  Patch patch;
+  for (std::size_t row = rowBegin; row < rowEnd; row += patch.Rows)
   {
-    const auto j = static_cast<std::int64_t>(row) % grid.Dimensions[1];
-    const auto k = static_cast<std::int64_t>(row) / grid.Dimensions[1];
-    for (std::int64_t i0 = 0; i0 < nx; i0 += BlockSize)
+    patch.First[1] = static_cast<std::int64_t>(row) % ny;
+    patch.First[2] = static_cast<std::int64_t>(row) / ny;
+    patch.Rows = std::min(
+      rowEnd - row, static_cast<std::size_t>(std::min(mostRows, ny - patch.First[1])));
+    for (std::int64_t& i0 = patch.First[0] = 0; i0 < nx; i0 += mostColumns)
     {
-      const auto count = static_cast<std::size_t>(std::min<std::int64_t>(BlockSize, nx - i0));
-      const std::size_t first = row * nx + i0;
+      patch.Columns = static_cast<std::size_t>(std::min(mostColumns, nx - i0));
       if (setup.Curved)
       {
-        ImageCurvature<N>(setup, grid, field, scaleX, i0, count, j, k, *block);
+        PatchCurvature<N>(setup, grid, field, scaleX, patch, *block);
       }
-      const bool uniform = Metrics<N>(setup, field, first, count, *block);
-      if (setup.Octaves.size() > 1)
+      const auto firstOf = [&](std::size_t r) { return (row + r) * nx + i0; };
+      bool uniform = true;
+      for (std::size_t r = 0; r < patch.Rows; ++r)
       {
-        std::fill(block->Noise, block->Noise + count + Lanes, 0.0f);
+        const std::size_t at = Patch::At(r);
+        uniform = Metrics<N>(setup, field, firstOf(r), at, patch.Columns, *block) && uniform;
+        if (setup.Octaves.size() > 1)
+        {
+          std::fill_n(block->Noise + at, patch.Columns + Lanes, 0.0f);
+        }
       }
       for (std::size_t o = 0; o < octaves.size(); ++o)
       {
         const OctaveSetup& octave = setup.Octaves[o];
-        ImageOctave<N>& image = octaves[o];
-        const double rowPlace[3] = { 0.0, CellPlace(grid, 1, j, octave.CellsPerUnit),
-          N == 3 ? CellPlace(grid, 2, k, octave.CellsPerUnit) : 0.0 };
-        std::int64_t cell[3];
-        V fraction[N];
-        for (int axis = 1; axis < N; ++axis)
+        if (setup.SingleCell)
         {
-          const double floored = std::floor(rowPlace[axis] + setup.CellRounding);
-          cell[axis] = static_cast<std::int64_t>(floored);
-          fraction[axis] = Const(static_cast<float>(rowPlace[axis] - floored));
+          AddRowOfCells<N>(
+            setup, grid, octave, octaves[o], patch, uniform, *block, counts.VisitedCorners);
+          continue;
         }
-        cell[2] = N == 3 ? cell[N - 1] : 0;
-        const auto alongRow = [&](std::size_t i, Places<N>& places) HWY_ATTR
+        LocatePatch<N>(setup, grid, octave, octaves[o], patch, *block);
+        for (std::size_t r = 0; r < patch.Rows && setup.Curved; ++r)
         {
-          places.Cell[0] = hn::LoadU(DU(), image.Column.data() + i0 + i);
-          places.Fraction[0] = Load(image.Fraction.data() + i0 + i);
-          for (int axis = 1; axis < N; ++axis)
-          {
-            places.Cell[axis] = hn::Set(DU(), WrapToPeriod(cell[axis], octave.Period[axis]));
-            places.Fraction[axis] = fraction[axis];
-          }
-        };
-        V window[N];
-        for (int axis = 1; axis < N; ++axis)
-        {
-          window[axis] = PlainQuinticFade(fraction[axis]);
+          BendMetrics<N>(setup, octave, Patch::At(r), patch.Columns, *block);
         }
-        const auto withWindow = [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
-        {
-          alongRow(i, places);
-          near[0] = Load(image.Window.data() + i0 + i);
-          for (int axis = 1; axis < N; ++axis)
-          {
-            near[axis] = window[axis];
-          }
-        };
-        if (setup.Parameters.Grid == Lattice::Simplicial)
-        {
-          for (std::size_t i = 0; i < count; ++i)
-          {
-            for (int axis = 0; axis < 3; ++axis)
-            {
-              const std::int64_t index = axis == 0 ? i0 + static_cast<std::int64_t>(i)
-                : axis == 1                        ? j
-                                                   : k;
-              block->Positions[3 * i + axis] = CellPlace(grid, axis, index, 1.0);
-            }
-          }
-          AddPoints<N>(
-            setup, octave, block->Positions, count, uniform, *block, counts.VisitedCorners);
-        }
-        else if (image.Rows)
-        {
-          image.Rows->MoveTo(cell[1], cell[2]);
-          RowCorners<N> corners(*image.Rows);
-          AddCells<N>(
-            setup, octave, *block, count, uniform, corners, counts.VisitedCorners, withWindow);
-        }
-        else if (setup.SingleCell)
-        {
-          LaneCorners<N> corners(octave);
-          AddCells<N>(
-            setup, octave, *block, count, uniform, corners, counts.VisitedCorners, withWindow);
-        }
-        else
-        {
-          AddWalks<N, true>(setup, octave, *block, count, counts.VisitedCorners, alongRow);
-        }
+        const auto walk = setup.Variant ? &WalkPatch<N, true> : &WalkPatch<N, false>;
+        walk(setup, octave, *block, patch.Rows, patch.Columns, counts.VisitedCorners);
       }
-      Finish(setup, *block, count, uniform, noise + first, counts);
+      for (std::size_t r = 0; r < patch.Rows; ++r)
+      {
+        Finish(setup, *block, Patch::At(r), patch.Columns, uniform, noise + firstOf(r), counts);
+      }
     }
   }
   return counts;
@@ -702,7 +773,7 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     {
       CopyCurvature<N>(setup, field.Curvature->Read(first, count, block->Tuples), count, *block);
     }
-    const bool uniform = Metrics<N>(setup, field, first, count, *block);
+    const bool uniform = Metrics<N>(setup, field, first, 0, count, *block);
     if (setup.Octaves.size() > 1)
     {
       std::fill(block->Noise, block->Noise + count + Lanes, 0.0f);
@@ -712,7 +783,7 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     {
       AddPoints<N>(setup, octave, place, count, uniform, *block, counts.VisitedCorners);
     }
-    Finish(setup, *block, count, uniform, noise + first, counts);
+    Finish(setup, *block, 0, count, uniform, noise + first, counts);
   }
   return counts;
 }

@@ -16,10 +16,16 @@
 
 namespace steerable
 {
-/// Samples that go through the stages together: their arrays stay in the first-level cache.
-constexpr std::size_t BlockSize = 256;
-/// A block with its neighbours to either side, and room for a whole SIMD register behind.
-constexpr std::size_t BlockRoom = BlockSize + 2 * ImageGrid::MaximumStride + 32;
+/// Samples that go through the stages together: their arrays stay in the nearest caches.
+constexpr std::size_t BlockSize = 512;
+/// Room for a whole SIMD register behind.
+constexpr std::size_t BlockRoom = BlockSize + 32;
+/// Registers of samples that share lists of corners where they can; in images one below the other.
+constexpr std::size_t TileRegisters = 8;
+/// Where walks want it, a block of an image is as many rows of this many samples.
+constexpr std::size_t PatchColumns = BlockSize / TileRegisters;
+/// Such a row with its neighbours to either side, and room behind.
+constexpr std::size_t RowRoom = PatchColumns + 2 * ImageGrid::MaximumStride + 32;
 
 /// Places beyond this many cells, and those that are not finite, count as 0: 2^50.
 constexpr double FarthestCell = 1125899906842624.0;
@@ -79,7 +85,8 @@ struct NoiseSetup
   /// Middle of its way on every axis, and radius of the ball around that holds all of it; 0: none moves.
   float JitterMiddle;
   float JitterRadius;
-  double LatticeSteps[3][3];
+  /// From indices of the lattice to its places, and back.
+  float LatticeSteps[3][3];
   double LatticeIndices[3][3];
 };
 
@@ -99,14 +106,19 @@ struct MetricBlock
   alignas(64) float Length[BlockRoom];
   /// 1 with a direction, 0 without.
   alignas(64) float Sense[BlockRoom];
+  /// What the curvature makes of these in one octave, see BendMetrics.
+  alignas(64) float BentAlong[BlockRoom];
+  alignas(64) float BentAcross[BlockRoom];
+  alignas(64) float BentSecond[BlockRoom];
+  alignas(64) float ClampedBend[3][BlockRoom];
   alignas(64) float Noise[BlockRoom];
   /// Places of the samples in the lattice: cells and fractions.
   alignas(64) std::uint32_t Cell[3][BlockRoom];
   alignas(64) float Fraction[3][BlockRoom];
-  /// Room for tuples that the host converts, and for the unit vectors of neighbouring rows.
+  /// Room for tuples that the host converts, and for the unit vectors of a patch and of two more rows.
   alignas(64) float Tuples[6 * BlockRoom];
   alignas(64) double Positions[3 * BlockRoom];
-  alignas(64) float Neighbor[2][3][BlockRoom];
+  alignas(64) float UnitRows[TileRegisters + 2][3][RowRoom];
 };
 } // namespace steerable
 

@@ -4,20 +4,13 @@
  * The sum over corners for any Quality and any variant (see SteerableNoiseSimd-inl.h, which includes
  * this for each SIMD level).
  *
- * Neighbouring samples are reached by the same corners. So they are listed once for a few registers of
- * samples, with a register of corners at a time: first the lattice rows, then the corners on them, then
- * those that really are in reach with their gradients. After that the samples take them one by one.
- * Samples that differ too much, or lie apart, have rows in common only and go to their own corners.
+ * Neighbouring samples are reached by the same corners. So they are listed once for a tile of several
+ * registers of samples, with a register of corners at a time: first the lattice rows, then the corners
+ * on them with their gradients. Then each register of samples finds out which of the corners reach it,
+ * again for a register of corners at a time, and takes those one by one. Registers that differ too much
+ * do not share a list; samples of a register that lie apart have rows in common only and go to their own
+ * corners.
  */
-
-/// Where the samples of a register are in the lattice of an octave: cells as the hash takes them, and
-/// fractions from their corners.
-template <int N>
-struct Places
-{
-  VU Cell[N];
-  V Fraction[N];
-};
 
 /// first, first + 1, ... (Highway 1.0 makes them lane by lane).
 HWY_INLINE VI RampInt(int first)
@@ -33,10 +26,6 @@ HWY_INLINE V Ramp(float first)
   return hn::Add(Const(first), hn::ConvertTo(DF(), RampInt(0)));
 }
 
-/// Registers of samples that share their lists where they can.
-constexpr std::size_t TileRegisters = 2;
-constexpr std::size_t TileSamples = TileRegisters * Lanes;
-
 /// Corners of a list, or lattice rows, that go through the stages together: a bit for each.
 constexpr std::size_t ListSize = 64;
 
@@ -45,17 +34,18 @@ template <int N>
 struct CornerList
 {
   std::size_t Count = 0;
-  /// From the cell that the group counts from.
-  HWY_ALIGN std::int32_t Index[N][ListSize];
+  /// How many of them have been sifted.
+  std::size_t Sifted = 0;
+  /// From the cell that the tile counts from. There is room for a register behind.
+  HWY_ALIGN std::int32_t Index[N][ListSize + 16];
   HWY_ALIGN float Offset[N][ListSize];
   HWY_ALIGN float Gradient[N][ListSize];
-  /// Offset and window on the axes that all samples of an image row share.
-  HWY_ALIGN float FromRow[N][ListSize];
-  HWY_ALIGN float RowWindow[ListSize];
   /// Of variants: displacement of the corner, (τ - 1/2) Speed, and what the surflet is multiplied by.
   HWY_ALIGN float Jitter[N][ListSize];
   HWY_ALIGN float Travel[ListSize];
   HWY_ALIGN float Amplitude[ListSize];
+  /// Window on the axes that all samples of a register of an image share.
+  HWY_ALIGN float RowWindow[ListSize];
 };
 
 /// The same of a corner for the lanes of a register.
@@ -64,118 +54,116 @@ struct Corner
 {
   V Offset[N];
   V Gradient[N];
-  V FromRow[N];
-  V RowWindow;
   V Jitter[N];
   V Travel;
   V Amplitude;
+  V RowWindow;
 
   WALK_INLINE Corner() {}
   /// One corner of a list for all lanes.
   WALK_INLINE Corner(const CornerList<N>& list, std::size_t i)
-    : RowWindow(Const(list.RowWindow[i]))
-    , Travel(Const(list.Travel[i]))
+    : Travel(Const(list.Travel[i]))
     , Amplitude(Const(list.Amplitude[i]))
+    , RowWindow(Const(list.RowWindow[i]))
   {
     for (int axis = 0; axis < N; ++axis)
     {
       this->Offset[axis] = Const(list.Offset[axis][i]);
       this->Gradient[axis] = Const(list.Gradient[axis][i]);
-      this->FromRow[axis] = Const(list.FromRow[axis][i]);
       this->Jitter[axis] = Const(list.Jitter[axis][i]);
     }
   }
 };
 
-/**
- * The samples that share a list. They change almost linearly from the first to the last, so sample λ in
- * [-1, 1] is at Place + λ PlaceStep, and so on, up to small rests. Distances s along and t across are
- * from the bent axis of the middle.
- */
-template <int N>
-struct Group
+/// The surflet of a tile: half axes, where its fade ends, and how far it travels to either side.
+struct Extent
 {
-  /// Registers [Begin, End) of the tile.
-  std::size_t Begin;
-  std::size_t End;
-  float LambdaStep; // between neighbours
-  float Place[N];
-  float PlaceStep[N]; // as a distance, not in indices of the lattice
-  float U[N];
-  float UStep[N];
-  float Bend[N];
-  float BendStep[N];
-  float BendLength;
-  /// Half axes of the surflet: where its fade ends.
   float HalfLength;
   float HalfWidth;
-  float InverseLength;
+  float Travel;
   /// A streak has the same width everywhere.
   bool Tapers;
-  /// Change of s with λ that comes from the places.
-  float AlongStep;
-  /// Largest distance between places, and that along a lattice row.
-  float Spread;
-  float RowSpread;
-  /// What s can be off its linear change, surflet's travel included, and off that of the middle, where
-  /// a row takes the change along it into account.
-  float AlongRest;
-  float AlongReach;
-  /// The same for t: Rest[0] + Rest[1] |s| + Rest[2] s², and Across[...] likewise.
-  float Rest[3];
-  float Across[3];
+};
 
-  /**
-   * Bounds, from what places, directions and bends are off their linear change. Sample λ sees a corner
-   * at v - λ PlaceStep, along u + λ UStep, with the bend + λ BendStep, each up to its rest. Across U,
-   * which only takes away, its t is therefore t - λ (PlaceStep + s UStep + s²/2 BendStep + s sStep Bend)
-   * up to Rest, where s + λ sStep is its s up to AlongRest and sStep = v UStep - AlongStep.
-   */
-  WALK_INLINE void SetBounds(
-    float placeRest, float directionRest, float bendRest, float travel, bool oblique)
+/**
+ * Groups of samples, one in each lane or the same in all. They change almost linearly with K numbers λ in
+ * [-1, 1]: a sample is at Place + Σ λ PlaceStep, and so on, up to small rests. Distances s along and t
+ * across are from the bent axis of the middle.
+ *
+ * Such a sample sees a corner at v - Σ λ PlaceStep, along u = U + Σ λ UStep, with the bend + Σ λ BendStep,
+ * each up to its rest. Its s is therefore s + Σ λ sStep up to AlongRest, with sStep = v UStep - AlongStep,
+ * and across U, which only takes away, its t is t - Σ λ (PlaceStep + s UStep + s²/2 BendStep + s sStep
+ * Bend) up to Rest[0] + Rest[1] |s| + Rest[2] s².
+ */
+template <int N, int K>
+struct Group
+{
+  V Place[N];
+  V U[N];
+  V Bend[N];
+  V PlaceStep[K][N]; // as distances, not in indices of the lattice
+  V UStep[K][N];
+  V BendStep[K][N];
+  V PlaceRest;
+  V DirectionRest;
+  V BendRest;
+
+  V BendLength;
+  V AlongStep[K];
+  /// Sums over the steps: of their lengths, and the largest v UStep.
+  V Places;
+  V Turn;
+  V Change;
+  V MostTurn;
+  V AlongRest;
+  V Rest[3];
+
+  WALK_INLINE Group() {}
+
+  /// What follows from the numbers before.
+  WALK_INLINE void SetBounds(const Extent& extent)
   {
-    float place2 = 0.0f;
-    float turn2 = 0.0f;
-    float change2 = 0.0f;
-    this->AlongStep = 0.0f;
-    for (int axis = 0; axis < N; ++axis)
+    const V half = Const(0.5f);
+    this->BendLength = hn::Sqrt(Dot(this->Bend, this->Bend));
+    this->Places = this->Turn = this->Change = hn::Zero(DF());
+    V alongSteps = hn::Zero(DF());
+    V bendTurn = hn::Zero(DF());
+    for (int k = 0; k < K; ++k)
     {
-      place2 += this->PlaceStep[axis] * this->PlaceStep[axis];
-      turn2 += this->UStep[axis] * this->UStep[axis];
-      change2 += this->BendStep[axis] * this->BendStep[axis];
-      this->AlongStep += this->PlaceStep[axis] * this->U[axis];
+      this->AlongStep[k] = Dot(this->PlaceStep[k], this->U);
+      alongSteps = hn::Add(alongSteps, hn::Abs(this->AlongStep[k]));
+      this->Places = hn::Add(this->Places, Length(this->PlaceStep[k]));
+      this->Turn = hn::Add(this->Turn, Length(this->UStep[k]));
+      this->Change = hn::Add(this->Change, Length(this->BendStep[k]));
+      bendTurn = hn::Add(bendTurn, hn::Abs(Dot(this->Bend, this->UStep[k])));
     }
-    this->RowSpread = oblique ? 0.0f : std::abs(this->PlaceStep[0]);
-    const float places = std::sqrt(place2);
-    const float fromRow = std::sqrt(std::max(0.0f, place2 - this->RowSpread * this->RowSpread));
-    const float turn = std::sqrt(turn2);
-    const float change = std::sqrt(change2);
-    const float kappa = this->BendLength + change + bendRest;
-    // Largest distances of a corner in reach, unbent; and what follows from them.
-    const float mostAlong = this->HalfLength + travel;
-    const float mostAcross = this->HalfWidth + 0.5f * mostAlong * mostAlong * kappa;
-    const float mostTurn = turn * (mostAcross + turn * mostAlong);
-    const float mostStep = std::abs(this->AlongStep) + mostTurn;
-    const float alongRest =
-      places * turn + directionRest * (mostAlong + mostAcross + places) + placeRest;
-    const float both = mostStep + alongRest;
-    this->Spread = places + placeRest;
-    this->AlongRest = alongRest + travel;
-    this->AlongReach = fromRow + mostTurn + alongRest + travel;
-    this->Rest[0] = placeRest + both * (turn + 0.5f * kappa * both);
-    this->Rest[1] = directionRest + kappa * alongRest + mostStep * change;
-    this->Rest[2] = 0.5f * bendRest;
-    this->Across[0] = this->Rest[0] + fromRow;
-    this->Across[1] = this->Rest[1] + turn + kappa * (fromRow + mostTurn);
-    this->Across[2] = this->Rest[2] + 0.5f * change;
+    // A corner in reach is at most this far from the sample, along it and, unbent, across it.
+    const float mostAlong = extent.HalfLength + extent.Travel;
+    const V mostSag = Const(0.5f * mostAlong * mostAlong);
+    const V turn = hn::Add(this->Turn, this->DirectionRest);
+    const V change = hn::Add(this->Change, this->BendRest);
+    const V kappa = hn::Add(this->BendLength, change);
+    const V mostAcross = hn::MulAdd(mostSag, kappa, Const(extent.HalfWidth));
+    this->MostTurn = hn::MulAdd(mostSag, bendTurn,
+      hn::Mul(this->Turn,
+        hn::MulAdd(turn, Const(mostAlong),
+          hn::MulAdd(mostSag, change, hn::Add(this->Places, Const(extent.HalfWidth))))));
+    const V mostStep = hn::Add(alongSteps, this->MostTurn);
+    const V rest = hn::Add(this->PlaceRest,
+      hn::MulAdd(this->Places, this->Turn,
+        hn::Mul(this->DirectionRest,
+          hn::Add(this->Places, hn::Add(mostAcross, Const(mostAlong))))));
+    const V both = hn::Add(mostStep, rest);
+    this->AlongRest = hn::Add(rest, Const(extent.Travel));
+    this->Rest[0] =
+      hn::MulAdd(both, hn::MulAdd(hn::Mul(half, kappa), both, turn), this->PlaceRest);
+    this->Rest[1] =
+      hn::MulAdd(kappa, rest, hn::MulAdd(mostStep, change, this->DirectionRest));
+    this->Rest[2] = hn::Mul(half, this->BendRest);
   }
 
-  float GetLength() const { return this->HalfLength + this->AlongReach; }
-  float GetLargestWidth() const
-  {
-    const float s = this->GetLength();
-    return this->HalfWidth + this->Across[0] + s * (this->Across[1] + s * this->Across[2]);
-  }
+private:
+  static WALK_INLINE V Length(const V (&v)[N]) { return hn::Sqrt(Dot(v, v)); }
 };
 
 /// A quadratic in s.
@@ -193,7 +181,7 @@ WALK_INLINE V GetTaper(V distance, V inverseLength, V halfWidth, bool tapers)
   return hn::IfThenElse(hn::Lt(left, hn::Zero(DF())), Const(-1e9f), hn::Mul(halfWidth, taper));
 }
 
-/// Where lattice rows are cut: the group's reach in all lanes, or that of a sample in each.
+/// Where lattice rows are cut: the reach of registers together in all lanes, or that of a sample in each.
 template <int N>
 struct Reach
 {
@@ -205,99 +193,274 @@ struct Reach
   V HalfWidth;
   V LargestWidth;
   V InverseLength;
+  /// Largest distance between places, and how far a row is continued for samples that are ahead on it.
   V Spread;
   V RowSpread;
+  /// What s can be off that of the middle; and t, by Across[0] + Across[1] |s| + Across[2] s².
   V AlongReach;
   V Across[3];
   bool Tapers;
 
   WALK_INLINE Reach() {}
-  WALK_INLINE explicit Reach(const Group<N>& group)
-    : BendLength(Const(group.BendLength))
-    , Length(Const(group.GetLength()))
-    , HalfWidth(Const(group.HalfWidth))
-    , LargestWidth(Const(group.GetLargestWidth()))
-    , InverseLength(Const(group.InverseLength))
-    , Spread(Const(group.Spread))
-    , RowSpread(Const(group.RowSpread))
-    , AlongReach(Const(group.AlongReach))
-    , Tapers(group.Tapers)
+
+  /**
+   * All that a group reaches. Of its first step the part on a lattice row, as long as `row`, is either a
+   * step like others, or the row is continued by it.
+   */
+  template <int K>
+  WALK_INLINE Reach(const Group<N, K>& group, const Extent& extent, V row)
+    : BendLength(group.BendLength)
+    , HalfWidth(Const(extent.HalfWidth))
+    , InverseLength(Const(1.0f / extent.HalfLength))
+    , Spread(hn::Add(group.Places, group.PlaceRest))
+    , Tapers(extent.Tapers)
+  {
+    std::copy(group.Place, group.Place + N, this->Place);
+    std::copy(group.U, group.U + N, this->U);
+    std::copy(group.Bend, group.Bend + N, this->Bend);
+    this->SetAcross(group, extent, hn::Zero(DF()));
+    const Reach<N> stepped(*this);
+    this->SetAcross(group, extent, row);
+    if (hn::GetLane(hn::Sub(stepped.LargestWidth, this->LargestWidth)) < 0.0f)
+    {
+      *this = stepped;
+    }
+  }
+
+private:
+  template <int K>
+  WALK_INLINE void SetAcross(const Group<N, K>& group, const Extent& extent, V row)
+  {
+    const V half = Const(0.5f);
+    this->RowSpread = row;
+    V along = group.MostTurn;
+    this->Across[0] = group.Rest[0];
+    this->Across[1] = hn::MulAdd(group.BendLength, group.MostTurn, group.Rest[1]);
+    this->Across[2] = hn::MulAdd(half, group.Change, group.Rest[2]);
+    for (int k = 0; k < K; ++k)
+    {
+      V place[N];
+      std::copy(group.PlaceStep[k], group.PlaceStep[k] + N, place);
+      place[0] = k == 0 ? hn::Sub(place[0], hn::CopySign(row, place[0])) : place[0];
+      const V alongStep = Dot(place, this->U);
+      V turn[N];
+      for (int axis = 0; axis < N; ++axis)
+      {
+        place[axis] = hn::NegMulAdd(alongStep, this->U[axis], place[axis]);
+        turn[axis] = hn::NegMulAdd(alongStep, this->Bend[axis], group.UStep[k][axis]);
+      }
+      along = hn::Add(along, hn::Abs(alongStep));
+      this->Across[0] = hn::Add(this->Across[0], hn::Sqrt(Dot(place, place)));
+      this->Across[1] = hn::Add(this->Across[1], hn::Sqrt(Dot(turn, turn)));
+    }
+    this->AlongReach = hn::Add(along, group.AlongRest);
+    this->Length = hn::Add(Const(extent.HalfLength), this->AlongReach);
+    this->LargestWidth = hn::Add(this->HalfWidth, Quadratic(this->Across, this->Length));
+  }
+};
+
+/**
+ * The registers of a tile, a group each: their numbers as of Group, in arrays over registers. Across the
+ * flow there is one axis in 2D, the normal (-u_y, u_x), and space in 3D.
+ */
+template <int N>
+struct Lines
+{
+  static constexpr std::size_t Room = TileRegisters > Lanes ? TileRegisters : Lanes;
+  static constexpr int AxesAcross = N == 2 ? 1 : N;
+  /// The first sample's; places are counted from there.
+  HWY_ALIGN std::uint32_t Cell[N][Room];
+  HWY_ALIGN float Place[N][Room];
+  HWY_ALIGN float PlaceStep[N][Room];
+  HWY_ALIGN float U[N][Room];
+  HWY_ALIGN float UStep[N][Room];
+  HWY_ALIGN float Bend[N][Room];
+  HWY_ALIGN float BendStep[N][Room];
+  /// At first the squares.
+  HWY_ALIGN float PlaceRest[Room];
+  HWY_ALIGN float DirectionRest[Room];
+  HWY_ALIGN float BendRest[Room];
+  HWY_ALIGN float AlongStep[Room];
+  HWY_ALIGN float AlongRest[Room];
+  HWY_ALIGN float Rest[3][Room];
+  HWY_ALIGN float TurnAcross[AxesAcross][Room];
+  HWY_ALIGN float StepAcross[AxesAcross][Room];
+  HWY_ALIGN float BendAcross[AxesAcross][Room];
+  HWY_ALIGN float ChangeAcross[AxesAcross][Room];
+};
+
+/// What decides whether a corner reaches samples on a line: as in Group, the same in all lanes.
+template <int N>
+struct Line
+{
+  static constexpr int AxesAcross = Lines<N>::AxesAcross;
+  V Place[N];
+  V U[N];
+  V StepAcross[AxesAcross];
+  V TurnAcross[AxesAcross];
+  V BendAcross[AxesAcross];
+  V ChangeAcross[AxesAcross];
+  V AlongStep;
+  V AlongRest;
+  V Rest[3];
+
+  WALK_INLINE Line() {}
+  /// A register of samples; `cell` is where places count from.
+  WALK_INLINE Line(const Lines<N>& lines, std::size_t r, const VU (&cell)[N])
+    : AlongStep(Const(lines.AlongStep[r]))
+    , AlongRest(Const(lines.AlongRest[r]))
   {
     for (int axis = 0; axis < N; ++axis)
     {
-      this->Place[axis] = Const(group.Place[axis]);
-      this->U[axis] = Const(group.U[axis]);
-      this->Bend[axis] = Const(group.Bend[axis]);
+      const auto cells = static_cast<std::int32_t>(lines.Cell[axis][r] - hn::GetLane(cell[axis]));
+      this->Place[axis] = Const(lines.Place[axis][r] + static_cast<float>(cells));
+      this->U[axis] = Const(lines.U[axis][r]);
+    }
+    for (int axis = 0; axis < AxesAcross; ++axis)
+    {
+      this->StepAcross[axis] = Const(lines.StepAcross[axis][r]);
+      this->TurnAcross[axis] = Const(lines.TurnAcross[axis][r]);
+      this->BendAcross[axis] = Const(lines.BendAcross[axis][r]);
+      this->ChangeAcross[axis] = Const(lines.ChangeAcross[axis][r]);
     }
     for (int i = 0; i < 3; ++i)
     {
-      this->Across[i] = Const(group.Across[i]);
+      this->Rest[i] = Const(lines.Rest[i][r]);
     }
   }
 };
 
-/// `Aligned`: the samples have their places on all axes but the first in common.
+/// Samples of a tile with what surflets need of them: a register.
+template <int N>
+struct Sample
+{
+  /// Whole cells from where offsets count, and the fraction.
+  V Shift[N];
+  V Fraction[N];
+  V U[N];
+  V M[N];
+  V Bend[N];
+  V Along;
+  V Across;
+  V Second;
+  V Sense;
+  V RootAlong;
+  /// 2D, in units of the half axes: √k u and √b n, the latter also in two parts, see Walk::AddSurflet;
+  /// what the fraction has of them; and √b κ / 2k.
+  V ScaledU[2];
+  V ScaledN[2];
+  V HighN[2];
+  V LowN[2];
+  V AlongFraction;
+  V AcrossFraction;
+  V ScaledSag;
+
+  WALK_INLINE Sample(
+    const NoiseSetup& setup, const MetricBlock& block, std::size_t i, const VU (&cell)[N])
+    : Along(Load((setup.Curved ? block.BentAlong : block.Along) + i))
+    , Across(Load((setup.Curved ? block.BentAcross : block.Across) + i))
+    , Second(Across)
+    , Sense(Load(block.Sense + i))
+    , RootAlong(hn::Sqrt(Along))
+  {
+    for (int axis = 0; axis < N; ++axis)
+    {
+      this->Shift[axis] = hn::ConvertTo(
+        DF(), hn::BitCast(DI(), hn::Sub(hn::LoadU(DU(), block.Cell[axis] + i), cell[axis])));
+      this->Fraction[axis] = Load(block.Fraction[axis] + i);
+      this->U[axis] = Load(block.U[axis] + i);
+      this->Bend[axis] = setup.Curved ? Load(block.ClampedBend[axis] + i) : hn::Zero(DF());
+      this->M[axis] = hn::Zero(DF());
+    }
+    if (setup.Biaxial)
+    {
+      this->Second = Load((setup.Curved ? block.BentSecond : block.Second) + i);
+      for (int axis = 0; axis < N; ++axis)
+      {
+        this->M[axis] = Load(block.M[axis] + i);
+      }
+    }
+    if constexpr (N == 2)
+    {
+      const V rootAcross = hn::Sqrt(this->Across);
+      V low[2]; // √b u: n is (-u_y, u_x)
+      V high[2];
+      V all[2];
+      for (int axis = 0; axis < 2; ++axis)
+      {
+        this->ScaledU[axis] = hn::Mul(this->RootAlong, this->U[axis]);
+        all[axis] = hn::Mul(rootAcross, this->U[axis]);
+        high[axis] = HighPart(all[axis]);
+        low[axis] = hn::MulAdd(rootAcross, Load(block.ULow[axis] + i),
+          hn::MulSub(rootAcross, HighPart(this->U[axis]), high[axis]));
+      }
+      this->ScaledN[0] = hn::Neg(all[1]);
+      this->ScaledN[1] = all[0];
+      this->HighN[0] = hn::Neg(high[1]);
+      this->HighN[1] = high[0];
+      this->LowN[0] = hn::Neg(low[1]);
+      this->LowN[1] = low[0];
+      this->AlongFraction = Dot(this->ScaledU, this->Fraction);
+      const V product = hn::Mul(this->ScaledN[0], this->Fraction[0]);
+      this->AcrossFraction = hn::Add(hn::MulAdd(this->ScaledN[1], this->Fraction[1], product),
+        hn::MulSub(this->ScaledN[0], this->Fraction[0], product));
+      const V across = hn::MulSub(this->U[0], this->Bend[1], hn::Mul(this->U[1], this->Bend[0]));
+      this->ScaledSag =
+        hn::Div(hn::Mul(rootAcross, across), hn::Add(this->Along, this->Along));
+    }
+  }
+};
+
+/// `Aligned`: the samples of a register have their places on all axes but the first in common.
 template <int N, bool Variant, bool Aligned>
 class Walk
 {
 public:
-  WALK_INLINE Walk(const NoiseSetup& setup, const OctaveSetup& octave)
+  WALK_INLINE Walk(const NoiseSetup& setup, const OctaveSetup& octave, const MetricBlock& block)
     : Setup(setup)
     , Params(setup.Parameters)
     , Octave(octave)
-    , InverseReach(Const(1.0f / (Params.Quality + 1)))
-    , GradientPower(Const(static_cast<float>(GradientVariance(Params.Gradients, N))))
+    , Block(block)
+    , Along(setup.Curved ? block.BentAlong : block.Along)
+    , Across(setup.Curved ? block.BentAcross : block.Across)
+    , Second(setup.Curved ? block.BentSecond : block.Second)
+    // Without a window the fade is taken at 0.
+    , InverseReach(Const(Params.LatticeWindow ? 1.0f / (Params.Quality + 1) : 0.0f))
+    , LaneStep(hn::Mul(Ramp(0.0f), Const(1.0f / std::max<float>(1.0f, Lanes - 1.0f))))
+    , GroupLines()
   {
   }
 
-  /// Takes register `r` of the tile from sample `i` of the block.
-  WALK_INLINE void SetRegister(
-    std::size_t r, const MetricBlock& block, std::size_t i, const Places<N>& places)
+  /// Register `r` of the tile is that from sample `i` of the block, of which it uses `count` lanes.
+  WALK_INLINE void SetRegister(std::size_t r, std::size_t i, std::size_t count)
   {
-    this->F[r] = Frame<N>(this->Setup, block, i, this->Octave.CellSize);
-    this->P[r] = places;
-    if constexpr (N == 2)
-    {
-      const Frame<N>& frame = this->F[r];
-      const V product = hn::Mul(frame.U[1], places.Fraction[0]);
-      this->CrossFraction[r] = hn::Sub(hn::MulSub(frame.U[0], places.Fraction[1], product),
-        hn::MulSub(frame.U[1], places.Fraction[0], product));
-    }
+    this->First[r] = i;
+    this->Count[r] = count;
     this->Total[r] = Sums();
   }
 
-  /// Sums up the first `count` samples of the tile; returns how many corners they visited.
-  WALK_INLINE std::uint64_t Evaluate(std::size_t count)
+  /// Sums up the first `registers` of the tile; returns how many corners their samples visited.
+  WALK_INLINE std::uint64_t Evaluate(std::size_t registers)
   {
-    this->Count = count;
     this->Visited = 0;
-    this->AddSpan(0, (count + Lanes - 1) / Lanes);
+    this->SetLines(registers);
+    this->AddSpan(0, registers);
     return this->Visited;
   }
 
-  WALK_INLINE V GetNoise(std::size_t r) const { return Normalized(this->Setup, this->Total[r]); }
+  WALK_INLINE std::size_t GetFirst(std::size_t r) const { return this->First[r]; }
+  WALK_INLINE V GetNoise(std::size_t r) const { return Normalized(this->Setup, N, this->Total[r]); }
 
 private:
-  static WALK_INLINE float LaneOf(V v, std::size_t lane)
-  {
-    HWY_ALIGN float lanes[Lanes];
-    hn::Store(v, DF(), lanes);
-    return lanes[lane];
-  }
+  // ---- which registers share a list -------------------------------------------------------------
 
-  // ---- the group --------------------------------------------------------------------------------
-
-  /// The samples of registers [begin, end): together if they are alike, else half by half.
+  /// Registers [begin, end): together if they are alike, else half by half.
   HWY_NOINLINE void AddSpan(std::size_t begin, std::size_t end)
   {
-    Group<N> group;
-    group.Begin = begin;
-    group.End = end;
-    const auto samples = static_cast<float>(Lanes * (end - begin));
-    group.LambdaStep = 2.0f / std::max(1.0f, samples - 1.0f);
-    if (this->SetGroup(group))
+    const Reach<N> reach = this->GetReach(begin, end);
+    if (hn::GetLane(reach.LargestWidth) - this->Surflet.HalfWidth < LargestSpread)
     {
-      this->AddGroup(group);
+      this->AddTogether(begin, end, reach);
     }
     else if (end - begin > 1)
     {
@@ -311,19 +474,23 @@ private:
     }
   }
 
-  /// Samples of a register.
-  WALK_INLINE std::size_t GetCount(std::size_t r) const
-  {
-    return std::min(Lanes, this->Count - r * Lanes);
-  }
-
-  WALK_INLINE V GetLeastAcross(std::size_t r) const
-  {
-    const Frame<N>& frame = this->F[r];
-    return this->Setup.Biaxial ? hn::Min(frame.Across, frame.Second) : frame.Across;
-  }
-
   WALK_INLINE bool IsStreaks() const { return Variant && this->Params.Surflet == Basis::Streaks; }
+
+  WALK_INLINE V GetLeastAcross(std::size_t i) const
+  {
+    const V across = Load(this->Across + i);
+    return this->Setup.Biaxial ? hn::Min(across, Load(this->Second + i)) : across;
+  }
+
+  /// Half-length in units of that of the metric's ellipsoid, and half-width.
+  WALK_INLINE float GetLengthSupport() const
+  {
+    return this->IsStreaks() ? 1.0f : std::sqrt(this->Setup.Support);
+  }
+  WALK_INLINE float GetWidthSupport() const
+  {
+    return this->IsStreaks() ? this->Setup.Support : std::sqrt(this->Setup.Support);
+  }
 
   /// How far surflets travel to either side, in half-lengths.
   WALK_INLINE float GetTravel() const
@@ -332,184 +499,316 @@ private:
                                           : 0.0f;
   }
 
-  /// Half axes of the surflet from the least eigenvalues.
-  WALK_INLINE void SetAxes(Group<N>& group, float along, float across) const
+  /// Middle and half of the way from `first` to `last`; adds the squares of what `values` are off it.
+  WALK_INLINE V AddRest(
+    V rest2, V values, float first, float last, float& middle, float& step) const
   {
-    const float support = this->Setup.Support;
-    const bool streaks = this->IsStreaks();
-    group.HalfLength = (streaks ? 1.0f : std::sqrt(support)) / std::sqrt(along) + Slack;
-    group.HalfWidth = (streaks ? support : std::sqrt(support)) / std::sqrt(across) + Slack;
-    group.InverseLength = 1.0f / group.HalfLength;
-    group.Tapers = !streaks;
+    middle = 0.5f * (first + last);
+    step = 0.5f * (last - first);
+    const V linear = hn::MulAdd(this->LaneStep, Const(last - first), Const(first));
+    const V rest = hn::Sub(values, linear);
+    return hn::MulAdd(rest, rest, rest2);
+  }
+
+  /// The lines of the tile's registers, and the largest surflet of their samples.
+  HWY_NOINLINE void SetLines(std::size_t registers)
+  {
+    Lines<N>& lines = this->GroupLines;
+    V along = Load(this->Along + this->First[0]);
+    V across = this->GetLeastAcross(this->First[0]);
+    float before[N] = {};
+    for (std::size_t r = 0; r < registers; ++r)
+    {
+      const std::size_t first = this->First[r];
+      const std::size_t last = first + Lanes - 1;
+      along = hn::Min(along, Load(this->Along + first));
+      across = hn::Min(across, this->GetLeastAcross(first));
+      // u and -u are the same axis: all on one side of the first, and that on the side of the line before.
+      float side = 0.0f;
+      float lastSide = 0.0f;
+      for (int axis = 0; axis < N; ++axis)
+      {
+        const float* u = this->Block.U[axis];
+        side += u[first] * before[axis];
+        lastSide += u[last] * u[first];
+      }
+      side = std::copysign(1.0f, side);
+      V cosine = hn::Zero(DF());
+      for (int axis = 0; axis < N; ++axis)
+      {
+        const float* u = this->Block.U[axis];
+        before[axis] = side * u[first];
+        cosine = hn::MulAdd(Load(u + first), Const(before[axis]), cosine);
+      }
+      const V sign = hn::And(cosine, hn::BitCast(DF(), hn::Set(DU(), 0x80000000u)));
+      const float lastSign = side * std::copysign(1.0f, lastSide);
+      V place2 = hn::Zero(DF());
+      V direction2 = hn::Zero(DF());
+      V bend2 = hn::Zero(DF());
+      for (int axis = 0; axis < N; ++axis)
+      {
+        const float* u = this->Block.U[axis];
+        direction2 = this->AddRest(direction2, hn::Xor(Load(u + first), sign), before[axis],
+          lastSign * u[last], lines.U[axis][r], lines.UStep[axis][r]);
+        if (this->Setup.Curved)
+        {
+          const float* bend = this->Block.ClampedBend[axis];
+          bend2 = this->AddRest(bend2, Load(bend + first), bend[first], bend[last],
+            lines.Bend[axis][r], lines.BendStep[axis][r]);
+        }
+        const std::uint32_t* cell = this->Block.Cell[axis];
+        const float* fraction = this->Block.Fraction[axis];
+        lines.Cell[axis][r] = cell[first];
+        lines.Place[axis][r] = fraction[first];
+        lines.PlaceStep[axis][r] = 0.0f;
+        if (!Aligned || axis == 0)
+        {
+          const VU cells = hn::Sub(hn::LoadU(DU(), cell + first), hn::Set(DU(), cell[first]));
+          const V places =
+            hn::Add(hn::ConvertTo(DF(), hn::BitCast(DI(), cells)), Load(fraction + first));
+          const auto lastCells = static_cast<std::int32_t>(cell[last] - cell[first]);
+          place2 = this->AddRest(place2, places, fraction[first],
+            static_cast<float>(lastCells) + fraction[last], lines.Place[axis][r],
+            lines.PlaceStep[axis][r]);
+        }
+      }
+      lines.PlaceRest[r] = GreatestLane(place2);
+      lines.DirectionRest[r] = GreatestLane(direction2);
+      lines.BendRest[r] = this->Setup.Curved ? GreatestLane(bend2) : 0.0f;
+    }
+    this->Surflet.HalfLength = this->GetLengthSupport() / std::sqrt(LeastLane(along)) + Slack;
+    this->Surflet.HalfWidth = this->GetWidthSupport() / std::sqrt(LeastLane(across)) + Slack;
+    this->Surflet.Travel = this->GetTravel() / std::sqrt(LeastLane(along));
+    this->Surflet.Tapers = !this->IsStreaks();
+    for (std::size_t r = 0; r < registers; r += Lanes)
+    {
+      this->SetBounds(r);
+    }
+  }
+
+  template <std::size_t Axes, std::size_t Room>
+  static WALK_INLINE void LoadAll(const float (&arrays)[Axes][Room], std::size_t i, V (&values)[Axes])
+  {
+    for (std::size_t axis = 0; axis < Axes; ++axis)
+    {
+      values[axis] = hn::Load(DF(), arrays[axis] + i);
+    }
+  }
+
+  template <std::size_t Axes, std::size_t Room>
+  static WALK_INLINE void StoreAll(const V (&values)[Axes], float (&arrays)[Axes][Room], std::size_t i)
+  {
+    for (std::size_t axis = 0; axis < Axes; ++axis)
+    {
+      hn::Store(values[axis], DF(), arrays[axis] + i);
+    }
+  }
+
+  /// Leaves of v what is across u; returns the rest.
+  static WALK_INLINE V TakeAlong(V (&v)[N], const V (&u)[N])
+  {
+    const V along = Dot(v, u);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      v[axis] = hn::NegMulAdd(along, u[axis], v[axis]);
+    }
+    return hn::Abs(along);
+  }
+
+  /// A vector across u on the axes of Lines.
+  static WALK_INLINE void ToAcross(
+    const V (&v)[N], const V (&u)[N], V (&across)[Lines<N>::AxesAcross])
+  {
+    if constexpr (N == 2)
+    {
+      across[0] = hn::MulSub(u[0], v[1], hn::Mul(u[1], v[0]));
+    }
+    else
+    {
+      std::copy(v, v + N, across);
+    }
+  }
+
+  static WALK_INLINE void StoreAcross(const V (&v)[N], const V (&u)[N],
+    float (&arrays)[Lines<N>::AxesAcross][Lines<N>::Room], std::size_t i)
+  {
+    V across[Lines<N>::AxesAcross];
+    ToAcross(v, u, across);
+    StoreAll(across, arrays, i);
+  }
+
+  /// Completes a register of lines.
+  WALK_INLINE void SetBounds(std::size_t i)
+  {
+    Lines<N>& lines = this->GroupLines;
+    Group<N, 1> group;
+    LoadAll(lines.U, i, group.U);
+    LoadAll(lines.Bend, i, group.Bend);
+    LoadAll(lines.PlaceStep, i, group.PlaceStep[0]);
+    LoadAll(lines.UStep, i, group.UStep[0]);
+    LoadAll(lines.BendStep, i, group.BendStep[0]);
+    group.PlaceRest = hn::Sqrt(hn::Load(DF(), lines.PlaceRest + i));
+    this->ToDistances(group.PlaceStep[0], group.PlaceRest);
+    group.DirectionRest = hn::Sqrt(hn::Load(DF(), lines.DirectionRest + i));
+    group.BendRest = hn::Sqrt(hn::Load(DF(), lines.BendRest + i));
+    this->SetAcrossFlow(group);
+    group.SetBounds(this->Surflet);
+
+    StoreAll(group.U, lines.U, i);
+    StoreAll(group.Bend, lines.Bend, i);
+    StoreAll(group.UStep[0], lines.UStep, i);
+    StoreAll(group.BendStep[0], lines.BendStep, i);
+    StoreAll(group.Rest, lines.Rest, i);
+    hn::Store(group.PlaceRest, DF(), lines.PlaceRest + i);
+    hn::Store(group.DirectionRest, DF(), lines.DirectionRest + i);
+    hn::Store(group.BendRest, DF(), lines.BendRest + i);
+    hn::Store(group.AlongStep[0], DF(), lines.AlongStep + i);
+    hn::Store(group.AlongRest, DF(), lines.AlongRest + i);
+    StoreAcross(group.UStep[0], group.U, lines.TurnAcross, i);
+    StoreAcross(group.Bend, group.U, lines.BendAcross, i);
+    StoreAcross(group.BendStep[0], group.U, lines.ChangeAcross, i);
+    TakeAlong(group.PlaceStep[0], group.U);
+    StoreAcross(group.PlaceStep[0], group.U, lines.StepAcross, i);
+  }
+
+  /// The middle of unit vectors is shorter than 1, and bends and changes are not quite across it.
+  template <int K>
+  static WALK_INLINE void SetAcrossFlow(Group<N, K>& group)
+  {
+    const V norm = hn::Sqrt(Dot(group.U, group.U));
+    const V inverse = Inverse(norm);
+    for (V& component : group.U)
+    {
+      component = hn::Mul(component, inverse);
+    }
+    group.DirectionRest = hn::Add(group.DirectionRest, hn::Abs(hn::Sub(Const(1.0f), norm)));
+    group.BendRest = hn::Add(group.BendRest, TakeAlong(group.Bend, group.U));
+    for (int k = 0; k < K; ++k)
+    {
+      group.DirectionRest = hn::Add(group.DirectionRest, TakeAlong(group.UStep[k], group.U));
+      group.BendRest = hn::Add(group.BendRest, TakeAlong(group.BendStep[k], group.U));
+    }
+  }
+
+  /// Places and their rest from indices of the lattice to distances; its steps have length 1 at most.
+  WALK_INLINE void ToDistances(V (&place)[N], V& rest) const
+  {
+    if (this->IsOblique())
+    {
+      V index[N];
+      std::copy(place, place + N, index);
+      this->ToPlace(index, place);
+      rest = hn::Add(rest, rest);
+    }
+  }
+
+  /**
+   * Splits vectors of the lines [begin, end), `value(axis, i)` their middles and `steps` what changes
+   * within them, into the linear change within a line and from line to line. Returns the most that they,
+   * with their own rests, are off that.
+   */
+  template <class Value>
+  WALK_INLINE V SplitSpan(std::size_t begin, std::size_t end, Value&& value,
+    const float (&steps)[N][Lines<N>::Room], const float* rests, V (&middle)[N],
+    V (&change)[2][N]) const
+  {
+    const V half = Const(0.5f);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      const V first = Const(value(axis, begin));
+      const V last = Const(value(axis, end - 1));
+      middle[axis] = hn::Mul(half, hn::Add(first, last));
+      change[0][axis] = Const(0.5f * (steps[axis][begin] + steps[axis][end - 1]));
+      change[1][axis] = hn::Mul(half, hn::Sub(last, first));
+    }
+    const float lambdaStep = 2.0f / std::max<float>(1.0f, end - begin - 1.0f);
+    V most = hn::Zero(DF());
+    for (std::size_t i = 0; i < end; i += Lanes)
+    {
+      const V r = Ramp(static_cast<float>(i) - static_cast<float>(begin));
+      const V lambda = hn::MulSub(r, Const(lambdaStep), Const(end - begin > 1 ? 1.0f : 0.0f));
+      V rest2 = hn::Zero(DF());
+      V step2 = hn::Zero(DF());
+      for (int axis = 0; axis < N; ++axis)
+      {
+        HWY_ALIGN float values[Lanes];
+        for (std::size_t lane = 0; lane < Lanes; ++lane)
+        {
+          values[lane] = value(axis, i + lane);
+        }
+        const V linear = hn::MulAdd(lambda, change[1][axis], middle[axis]);
+        const V rest = hn::Sub(hn::Load(DF(), values), linear);
+        rest2 = hn::MulAdd(rest, rest, rest2);
+        const V step = hn::Sub(hn::Load(DF(), steps[axis] + i), change[0][axis]);
+        step2 = hn::MulAdd(step, step, step2);
+      }
+      const auto used = hn::And(
+        hn::Ge(r, hn::Zero(DF())), hn::Lt(r, Const(static_cast<float>(end - begin))));
+      const V rest =
+        hn::Add(hn::Load(DF(), rests + i), hn::Add(hn::Sqrt(rest2), hn::Sqrt(step2)));
+      most = hn::Max(most, hn::IfThenElseZero(used, rest));
+    }
+    return hn::MaxOfLanes(DF(), most);
+  }
+
+  /// What the registers [begin, end) reach together.
+  WALK_INLINE Reach<N> GetReach(std::size_t begin, std::size_t end)
+  {
+    const Lines<N>& lines = this->GroupLines;
+    Group<N, 2> group;
+    for (int axis = 0; axis < N; ++axis)
+    {
+      this->Cell[axis] = hn::Set(DU(), lines.Cell[axis][begin]);
+    }
+    group.PlaceRest = this->SplitSpan(
+      begin, end,
+      [&](int axis, std::size_t r) HWY_ATTR
+      {
+        const auto cells =
+          static_cast<std::int32_t>(lines.Cell[axis][r] - lines.Cell[axis][begin]);
+        return lines.Place[axis][r] + static_cast<float>(cells);
+      },
+      lines.PlaceStep, lines.PlaceRest, group.Place, group.PlaceStep);
+    group.DirectionRest = this->SplitSpan(
+      begin, end, [&](int axis, std::size_t r) HWY_ATTR { return lines.U[axis][r]; }, lines.UStep,
+      lines.DirectionRest, group.U, group.UStep);
+    group.BendRest = this->SplitSpan(
+      begin, end, [&](int axis, std::size_t r) HWY_ATTR { return lines.Bend[axis][r]; },
+      lines.BendStep, lines.BendRest, group.Bend, group.BendStep);
+    const V row = this->IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
+    this->ToDistances(group.PlaceStep[0], group.PlaceRest);
+    V none;
+    this->ToDistances(group.PlaceStep[1], none);
+    this->SetAcrossFlow(group);
+    group.SetBounds(this->Surflet);
+    return Reach<N>(group, this->Surflet, row);
   }
 
   /// The samples of a register, each with its own cell, place and reach.
   WALK_INLINE void SetApart(Reach<N>& reach, std::size_t r)
   {
-    const Frame<N>& frame = this->F[r];
-    V bend2 = hn::Zero(DF());
+    const std::size_t first = this->First[r];
     for (int axis = 0; axis < N; ++axis)
     {
-      this->Cell[axis] = this->P[r].Cell[axis];
-      this->Shift[r][axis] = hn::Zero(DF());
-      reach.Place[axis] = this->P[r].Fraction[axis];
-      reach.U[axis] = frame.U[axis];
-      reach.Bend[axis] = frame.Bend[axis];
-      bend2 = hn::MulAdd(frame.Bend[axis], frame.Bend[axis], bend2);
+      this->Cell[axis] = hn::LoadU(DU(), this->Block.Cell[axis] + first);
+      reach.Place[axis] = Load(this->Block.Fraction[axis] + first);
+      reach.U[axis] = Load(this->Block.U[axis] + first);
+      reach.Bend[axis] =
+        this->Setup.Curved ? Load(this->Block.ClampedBend[axis] + first) : hn::Zero(DF());
     }
-    reach.BendLength = hn::Sqrt(bend2);
-    const float support = this->Setup.Support;
-    const bool streaks = this->IsStreaks();
+    reach.BendLength = hn::Sqrt(Dot(reach.Bend, reach.Bend));
     const V one = Const(1.0f);
-    const V rootInverse = hn::Div(one, hn::Sqrt(frame.Along));
-    const V length =
-      hn::MulAdd(Const(streaks ? 1.0f : std::sqrt(support)), rootInverse, Const(Slack));
+    const V rootInverse = hn::Div(one, hn::Sqrt(Load(this->Along + first)));
+    const V length = hn::MulAdd(Const(this->GetLengthSupport()), rootInverse, Const(Slack));
     reach.HalfWidth = hn::Add(
-      hn::Div(Const(streaks ? support : std::sqrt(support)), hn::Sqrt(this->GetLeastAcross(r))),
-      Const(Slack));
+      hn::Div(Const(this->GetWidthSupport()), hn::Sqrt(this->GetLeastAcross(first))), Const(Slack));
     reach.LargestWidth = reach.HalfWidth;
     reach.InverseLength = hn::Div(one, length);
     reach.AlongReach = hn::Mul(rootInverse, Const(this->GetTravel()));
     reach.Length = hn::Add(length, reach.AlongReach);
     reach.Spread = reach.RowSpread = hn::Zero(DF());
     reach.Across[0] = reach.Across[1] = reach.Across[2] = hn::Zero(DF());
-    reach.Tapers = !streaks;
-  }
-
-  /// Splits what `get` gives for a register into its linear change and the squares of the rest.
-  template <class Get>
-  static WALK_INLINE void SplitLinear(
-    const Group<N>& group, float& middle, float& step, V (&rest2)[TileRegisters], Get&& get)
-  {
-    const float first = hn::GetLane(get(group.Begin));
-    const float last = LaneOf(get(group.End - 1), Lanes - 1);
-    middle = 0.5f * (first + last);
-    step = 0.5f * (last - first);
-    for (std::size_t r = group.Begin; r < group.End; ++r)
-    {
-      const V index = Ramp(static_cast<float>(Lanes * (r - group.Begin)));
-      const V linear = hn::MulAdd(index, Const(step * group.LambdaStep), Const(first));
-      const V rest = hn::Sub(get(r), linear);
-      rest2[r] = hn::MulAdd(rest, rest, rest2[r]);
-    }
-  }
-
-  /// Root of the largest of the squares.
-  static WALK_INLINE float GetLargest(const Group<N>& group, const V (&squares)[TileRegisters])
-  {
-    V most = squares[group.Begin];
-    for (std::size_t r = group.Begin + 1; r < group.End; ++r)
-    {
-      most = hn::Max(most, squares[r]);
-    }
-    return std::sqrt(GreatestLane(most));
-  }
-
-  /// False if the samples had better not share a list.
-  HWY_NOINLINE bool SetGroup(Group<N>& group)
-  {
-    V along = this->F[group.Begin].Along;
-    V across = this->GetLeastAcross(group.Begin);
-    V sign[TileRegisters];
-    V place2[TileRegisters];
-    V direction2[TileRegisters];
-    V bend2[TileRegisters];
-    for (int axis = 0; axis < N; ++axis)
-    {
-      this->Cell[axis] = hn::Set(DU(), hn::GetLane(this->P[group.Begin].Cell[axis]));
-    }
-    for (std::size_t r = group.Begin; r < group.End; ++r)
-    {
-      const Frame<N>& frame = this->F[r];
-      along = hn::Min(along, frame.Along);
-      across = hn::Min(across, this->GetLeastAcross(r));
-      // u and -u are the same axis.
-      V cosine = hn::Zero(DF());
-      for (int axis = 0; axis < N; ++axis)
-      {
-        const float first = hn::GetLane(this->F[group.Begin].U[axis]);
-        cosine = hn::MulAdd(frame.U[axis], Const(first), cosine);
-        this->Shift[r][axis] = hn::Zero(DF());
-        if (!Aligned || axis == 0)
-        {
-          this->Shift[r][axis] = hn::ConvertTo(
-            DF(), hn::BitCast(DI(), hn::Sub(this->P[r].Cell[axis], this->Cell[axis])));
-        }
-      }
-      sign[r] = hn::And(cosine, hn::BitCast(DF(), hn::Set(DU(), 0x80000000u)));
-      place2[r] = direction2[r] = bend2[r] = hn::Zero(DF());
-    }
-    this->SetAxes(group, LeastLane(along), LeastLane(across));
-    const float travel = this->GetTravel() / std::sqrt(LeastLane(along));
-    for (int axis = 0; axis < N; ++axis)
-    {
-      SplitLinear(group, group.U[axis], group.UStep[axis], direction2,
-        [&](std::size_t r) HWY_ATTR { return hn::Xor(this->F[r].U[axis], sign[r]); });
-      group.Bend[axis] = group.BendStep[axis] = 0.0f;
-      if (this->Setup.Curved)
-      {
-        SplitLinear(group, group.Bend[axis], group.BendStep[axis], bend2,
-          [&](std::size_t r) HWY_ATTR { return this->F[r].Bend[axis]; });
-      }
-      if (Aligned && axis > 0)
-      {
-        group.Place[axis] = hn::GetLane(this->P[group.Begin].Fraction[axis]);
-        group.PlaceStep[axis] = 0.0f;
-      }
-      else
-      {
-        SplitLinear(group, group.Place[axis], group.PlaceStep[axis], place2,
-          [&](std::size_t r) HWY_ATTR
-          { return hn::Add(this->Shift[r][axis], this->P[r].Fraction[axis]); });
-      }
-    }
-    float place = GetLargest(group, place2);
-    if (this->IsOblique())
-    {
-      // From indices of the lattice to distances; its steps have length 1 at most.
-      float step[N];
-      for (int i = 0; i < N; ++i)
-      {
-        step[i] = 0.0f;
-        for (int j = 0; j < N; ++j)
-        {
-          step[i] += static_cast<float>(this->Setup.LatticeSteps[i][j]) * group.PlaceStep[j];
-        }
-      }
-      std::copy(step, step + N, group.PlaceStep);
-      place *= 2.0f;
-    }
-    // The middle of unit vectors is shorter than 1, and bends and changes are not quite across it.
-    float norm2 = 0.0f;
-    for (int axis = 0; axis < N; ++axis)
-    {
-      norm2 += group.U[axis] * group.U[axis];
-    }
-    const float norm = std::sqrt(norm2);
-    float alongBend = 0.0f;
-    float alongBendStep = 0.0f;
-    float alongStep = 0.0f;
-    for (int axis = 0; axis < N; ++axis)
-    {
-      group.U[axis] /= norm;
-      alongBend += group.Bend[axis] * group.U[axis];
-      alongBendStep += group.BendStep[axis] * group.U[axis];
-      alongStep += group.UStep[axis] * group.U[axis];
-    }
-    float length2 = 0.0f;
-    for (int axis = 0; axis < N; ++axis)
-    {
-      group.Bend[axis] -= alongBend * group.U[axis];
-      group.BendStep[axis] -= alongBendStep * group.U[axis];
-      group.UStep[axis] -= alongStep * group.U[axis];
-      length2 += group.Bend[axis] * group.Bend[axis];
-    }
-    group.BendLength = std::sqrt(length2);
-    const float direction =
-      GetLargest(group, direction2) + std::abs(1.0f - norm) + std::abs(alongStep);
-    const float bend = this->Setup.Curved ? GetLargest(group, bend2) : 0.0f;
-    group.SetBounds(place, direction, bend, travel, this->IsOblique());
-    return group.GetLargestWidth() - group.HalfWidth < LargestSpread;
+    reach.Tapers = !this->IsStreaks();
   }
 
   // ---- listing corners --------------------------------------------------------------------------
@@ -530,11 +829,11 @@ private:
       place[i] = index[i];
       if (this->IsOblique())
       {
-        place[i] = hn::Mul(index[0], Const(static_cast<float>(this->Setup.LatticeSteps[i][0])));
+        place[i] = hn::Mul(index[0], Const(this->Setup.LatticeSteps[i][0]));
         for (int j = 1; j < N; ++j)
         {
           place[i] = hn::MulAdd(
-            index[j], Const(static_cast<float>(this->Setup.LatticeSteps[i][j])), place[i]);
+            index[j], Const(this->Setup.LatticeSteps[i][j]), place[i]);
         }
       }
     }
@@ -650,7 +949,8 @@ private:
     last = hn::IfThenElse(hn::Gt(low, high), Const(-1e9f), hn::Floor(last));
   }
 
-  HWY_NOINLINE void AddGroup(const Group<N>& group)
+  /// Registers [begin, end), whose reach this is.
+  HWY_NOINLINE void AddTogether(std::size_t begin, std::size_t end, const Reach<N>& reach)
   {
     HWY_ALIGN std::int32_t rowY[ListSize];
     HWY_ALIGN std::int32_t rowZ[ListSize];
@@ -658,7 +958,6 @@ private:
     HWY_ALIGN std::int32_t lasts[Lanes];
     std::size_t rows = 0;
     CornerList<N> list;
-    const Reach<N> reach(group);
     const IndexAxis axisY = this->GetIndexAxis(reach, 1);
     const V length = hn::Add(reach.Length, Const(this->Setup.JitterRadius));
     V first;
@@ -669,7 +968,7 @@ private:
       {
         if (rows + Lanes > ListSize)
         {
-          this->AddRows(group, reach, rowY, rowZ, rows, list);
+          this->AddRows(begin, end, reach, rowY, rowZ, rows, list);
           rows = 0;
         }
         hn::StoreU(RampInt(y), DI(), rowY + rows);
@@ -704,13 +1003,14 @@ private:
         }
       }
     }
-    this->AddRows(group, reach, rowY, rowZ, rows, list);
-    this->AddCorners(group, list);
+    this->AddRows(begin, end, reach, rowY, rowZ, rows, list);
+    this->Sift(reach, list);
+    this->AddCorners(begin, end, list);
   }
 
   /// Puts the corners of these rows on the list.
-  HWY_NOINLINE void AddRows(const Group<N>& group, const Reach<N>& reach, std::int32_t* rowY,
-    std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
+  HWY_NOINLINE void AddRows(std::size_t begin, std::size_t end, const Reach<N>& reach,
+    std::int32_t* rowY, std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
   {
     HWY_ALIGN std::int32_t firsts[Lanes];
     HWY_ALIGN std::int32_t lasts[Lanes];
@@ -737,8 +1037,12 @@ private:
         {
           if (list.Count + Lanes > ListSize)
           {
-            this->AddCorners(group, list);
-            list.Count = 0;
+            this->Sift(reach, list);
+            if (2 * list.Count > ListSize)
+            {
+              this->AddCorners(begin, end, list);
+              list.Count = list.Sifted = 0;
+            }
           }
           hn::StoreU(RampInt(x), DI(), list.Index[0] + list.Count);
           hn::StoreU(hn::Set(DI(), rowY[i + lane]), DI(), list.Index[1] + list.Count);
@@ -777,7 +1081,7 @@ private:
       s0 = hn::MulAdd(row[i], reach.U[i], s0);
       if (this->IsOblique())
       {
-        se = hn::MulAdd(Const(static_cast<float>(this->Setup.LatticeSteps[i][0])), reach.U[i], se);
+        se = hn::MulAdd(Const(this->Setup.LatticeSteps[i][0]), reach.U[i], se);
       }
     }
     V t0[N];
@@ -786,7 +1090,7 @@ private:
     {
       t0[i] = hn::NegMulAdd(s0, reach.U[i], row[i]);
       te[i] =
-        hn::NegMulAdd(se, reach.U[i], Const(static_cast<float>(this->Setup.LatticeSteps[i][0])));
+        hn::NegMulAdd(se, reach.U[i], Const(this->Setup.LatticeSteps[i][0]));
     }
     const V inverse = Inverse(se);
     const V middle = hn::Neg(hn::Mul(s0, inverse));
@@ -888,7 +1192,7 @@ private:
   /// The corners of the rows from the least of `first` to the greatest of `last`.
   WALK_INLINE void AddRowsApart(const Reach<N>& reach, std::size_t r, V first, V last, int z)
   {
-    const Sample sample{ this->F[r], this->P[r].Fraction, this->Shift[r], this->CrossFraction[r] };
+    const Sample<N> sample(this->Setup, this->Block, this->First[r], this->Cell);
     const IndexAxis axisX = this->GetIndexAxis(reach, 0);
     const auto none = hn::Gt(first, last);
     const int lastY = ToCorner(GreatestLane(hn::IfThenElse(none, Const(-1e9f), last)));
@@ -918,12 +1222,16 @@ private:
         {
           offset[axis] = hn::ConvertTo(DF(), corner[axis]);
         }
-        this->AddSurflet(sample, this->Describe(offset, this->HashCorners(corner)), this->Total[r]);
-        this->Visited += this->GetCount(r);
+        Corner<N> described = this->Describe(offset, this->HashCorners(corner));
+        described.RowWindow = this->GetRowWindow(sample, offset);
+        this->WithKind(
+          [&](auto curved, auto squares) HWY_ATTR {
+            this->template AddSurflet<curved(), squares()>(sample, described, this->Total[r]);
+          });
+        this->Visited += this->Count[r];
       }
     }
   }
-
   // ---- listed corners ---------------------------------------------------------------------------
 
   WALK_INLINE VU HashCorners(const VI (&corner)[N]) const
@@ -946,86 +1254,7 @@ private:
     return hn::Sub(HashToUnit(HashStream(hash, 3 + axis)), Const(this->Setup.JitterDown));
   }
 
-  /// Sets the bits, from bit `firstBit` on, of those of these corners that reach samples of a register.
-  WALK_INLINE void AddReaching(const Group<N>& group, const V (&offset)[N], VU hash,
-    hn::Mask<DF> listed, std::size_t firstBit, std::uint64_t (&bits)[TileRegisters]) const
-  {
-    V index[N];
-    V v[N];
-    for (int axis = 0; axis < N; ++axis)
-    {
-      index[axis] = hn::Sub(offset[axis], Const(group.Place[axis]));
-    }
-    this->ToPlace(index, v);
-    for (int axis = 0; axis < N && Variant && this->Setup.JitterRadius > 0.0f; ++axis)
-    {
-      v[axis] = hn::Add(v[axis], this->GetJitter(hash, axis));
-    }
-    V s = hn::Mul(v[0], Const(group.U[0]));
-    for (int axis = 1; axis < N; ++axis)
-    {
-      s = hn::MulAdd(v[axis], Const(group.U[axis]), s);
-    }
-    const V sag = hn::Mul(hn::Mul(s, s), Const(0.5f));
-    V sStep = Const(-group.AlongStep);
-    for (int axis = 0; axis < N; ++axis)
-    {
-      sStep = hn::MulAdd(v[axis], Const(group.UStep[axis]), sStep);
-    }
-    const V sagStep = hn::Mul(s, sStep);
-    V t2 = hn::Zero(DF());
-    V step2 = Const(1e-20f);
-    V tStep = hn::Zero(DF());
-    for (int axis = 0; axis < N; ++axis)
-    {
-      V t = hn::NegMulAdd(s, Const(group.U[axis]), v[axis]);
-      V step = hn::MulAdd(s, Const(group.UStep[axis]),
-        Const(group.PlaceStep[axis] - group.AlongStep * group.U[axis]));
-      if (this->Setup.Curved)
-      {
-        const V bend = Const(group.Bend[axis]);
-        t = hn::NegMulAdd(sag, bend, t);
-        step = hn::MulAdd(sag, Const(group.BendStep[axis]), step);
-        step = hn::MulAdd(sagStep, bend, step);
-      }
-      t2 = hn::MulAdd(t, t, t2);
-      tStep = hn::MulAdd(t, step, tStep);
-      step2 = hn::MulAdd(step, step, step2);
-    }
-    const V rest[3] = { Const(group.Rest[0]), Const(group.Rest[1]), Const(group.Rest[2]) };
-    const V more = Quadratic(rest, hn::Abs(s));
-    // |t - λ step| at the λ where it is least, of those that a register has.
-    const V best = hn::Div(tStep, step2);
-    for (std::size_t r = group.Begin; r < group.End; ++r)
-    {
-      const float step = group.LambdaStep;
-      const float first = static_cast<float>(Lanes * (r - group.Begin)) * step - 1.0f;
-      const float half = 0.5f * static_cast<float>(Lanes - 1) * step;
-      const V lambda = hn::Max(hn::Min(best, Const(first + 2.0f * half)), Const(first));
-      const V least = hn::MulAdd(hn::MulSub(lambda, step2, hn::Add(tStep, tStep)), lambda, t2);
-      // Distance along the flow from the middle of the register.
-      const V distance = hn::Abs(hn::MulAdd(sStep, Const(first + half), s));
-      const V shortest =
-        hn::Sub(distance, hn::MulAdd(hn::Abs(sStep), Const(half), Const(group.AlongRest)));
-      const V width = hn::Add(
-        more, GetTaper(shortest, Const(group.InverseLength), Const(group.HalfWidth), group.Tapers));
-      const auto inside = hn::Le(least, hn::MulAdd(width, width, Const(1e-5f)));
-      bits[r] |= ToBits(hn::And(listed, hn::And(inside, hn::Gt(width, hn::Zero(DF())))))
-        << firstBit;
-    }
-  }
-
-  static WALK_INLINE std::uint64_t ToBits(hn::Mask<DF> mask)
-  {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(DF(), mask, bytes);
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < (Lanes + 7) / 8; ++i)
-    {
-      bits |= static_cast<std::uint64_t>(bytes[i]) << (8 * i);
-    }
-    return bits;
-  }
+  WALK_INLINE bool IsJittered() const { return Variant && this->Setup.JitterRadius > 0.0f; }
 
   WALK_INLINE Corner<N> Describe(const V (&offset)[N], VU hash) const
   {
@@ -1044,26 +1273,16 @@ private:
       // The value.
       std::fill(corner.Gradient, corner.Gradient + N, hn::Mul(HashToSigned(hash), Const(2.0f)));
     }
-    corner.RowWindow = Const(1.0f);
     for (int axis = 0; axis < N; ++axis)
     {
       corner.Offset[axis] = offset[axis];
-      if (Aligned && !Variant && axis > 0)
+      if (this->IsJittered())
       {
-        corner.FromRow[axis] = hn::Sub(offset[axis], this->P[0].Fraction[axis]);
-        if (this->Params.LatticeWindow)
-        {
-          corner.RowWindow = hn::Mul(corner.RowWindow,
-            QuinticFade(hn::Mul(hn::Abs(corner.FromRow[axis]), this->InverseReach)));
-        }
+        corner.Jitter[axis] = this->GetJitter(hash, axis);
       }
     }
     if constexpr (Variant)
     {
-      for (int axis = 0; axis<N&& this->Setup.JitterRadius> 0.0f; ++axis)
-      {
-        corner.Jitter[axis] = this->GetJitter(hash, axis);
-      }
       corner.Amplitude = Const(1.0f);
       if (this->Params.Motion)
       {
@@ -1088,34 +1307,22 @@ private:
   /// Writes a register of corners to the list.
   WALK_INLINE void Put(const Corner<N>& corner, CornerList<N>& list, std::size_t i) const
   {
-    for (int axis = 0; axis < N; ++axis)
+    StoreAll(corner.Offset, list.Offset, i);
+    StoreAll(corner.Gradient, list.Gradient, i);
+    if (this->IsJittered())
     {
-      hn::Store(corner.Offset[axis], DF(), list.Offset[axis] + i);
-      hn::Store(corner.Gradient[axis], DF(), list.Gradient[axis] + i);
-      if (Aligned && !Variant && axis > 0)
-      {
-        hn::Store(corner.FromRow[axis], DF(), list.FromRow[axis] + i);
-      }
-      if (Variant && this->Setup.JitterRadius > 0.0f)
-      {
-        hn::Store(corner.Jitter[axis], DF(), list.Jitter[axis] + i);
-      }
+      StoreAll(corner.Jitter, list.Jitter, i);
     }
     if constexpr (Variant)
     {
       hn::Store(corner.Travel, DF(), list.Travel + i);
       hn::Store(corner.Amplitude, DF(), list.Amplitude + i);
     }
-    else if constexpr (Aligned)
-    {
-      hn::Store(corner.RowWindow, DF(), list.RowWindow + i);
-    }
   }
 
-  /// Adds those corners of the list that reach the samples to their sums.
-  HWY_NOINLINE void AddCorners(const Group<N>& group, CornerList<N>& list)
+  /// Adds those corners of the list that reach the samples of registers [begin, end) to their sums.
+  HWY_NOINLINE void AddCorners(std::size_t begin, std::size_t end, CornerList<N>& list)
   {
-    std::uint64_t bits[TileRegisters] = {};
     // What stands behind the end of the list must at least be an index.
     for (int axis = 0; axis < N; ++axis)
     {
@@ -1126,7 +1333,6 @@ private:
     }
     for (std::size_t i = 0; i < list.Count; i += Lanes)
     {
-      const auto listed = hn::FirstN(DF(), list.Count - i);
       VI corner[N];
       V offset[N];
       for (int axis = 0; axis < N; ++axis)
@@ -1134,69 +1340,264 @@ private:
         corner[axis] = hn::Load(DI(), list.Index[axis] + i);
         offset[axis] = hn::ConvertTo(DF(), corner[axis]);
       }
-      const VU hash = this->HashCorners(corner);
+      this->Put(this->Describe(offset, this->HashCorners(corner)), list, i);
+    }
+    const std::uint64_t listed =
+      list.Count == ListSize ? ~0ull : (std::uint64_t{ 1 } << list.Count) - 1;
+    for (std::size_t r = begin; r < end; ++r)
+    {
+      std::uint64_t bits = listed;
       if (this->Params.AnisotropicWeight)
       {
-        this->AddReaching(group, offset, hash, listed, i, bits);
+        bits &= this->GetReaching(r, list);
       }
-      else
+      this->Visited += this->Count[r] * hwy::PopCount(bits);
+      const Sample<N> sample(this->Setup, this->Block, this->First[r], this->Cell);
+      this->SetRowWindows(sample, list);
+      this->WithKind(
+        [&](auto curved, auto squares) HWY_ATTR {
+          this->template AddSurflets<curved(), squares()>(sample, list, bits, this->Total[r]);
+        });
+    }
+  }
+
+  /// Calls `work` with what surflets take into account, as types: bends, and the sum of variances.
+  template <class Work>
+  WALK_INLINE void WithKind(Work&& work) const
+  {
+    constexpr std::true_type yes;
+    constexpr std::bool_constant<Variant> no; // there variants are not worth more code
+    const bool squares = this->Params.Normalize == Normalization::UnitVariance;
+    if (this->Setup.Curved)
+    {
+      squares ? work(yes, yes) : work(yes, no);
+    }
+    else
+    {
+      squares ? work(no, yes) : work(no, no);
+    }
+  }
+
+  static WALK_INLINE std::uint64_t ToBits(hn::Mask<DF> mask)
+  {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(DF(), mask, bytes);
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < (Lanes + 7) / 8; ++i)
+    {
+      bits |= static_cast<std::uint64_t>(bytes[i]) << (8 * i);
+    }
+    return bits;
+  }
+
+  /// Which of the corners at these indices, displaced by `jitter`, reach samples on a line.
+  WALK_INLINE hn::Mask<DF> IsReached(
+    const Line<N>& line, const V (&corner)[N], const V (&jitter)[N]) const
+  {
+    constexpr int AxesAcross = Line<N>::AxesAcross;
+    V v[N];
+    for (int axis = 0; axis < N; ++axis)
+    {
+      v[axis] = hn::Sub(corner[axis], line.Place[axis]);
+    }
+    if constexpr (Variant)
+    {
+      V index[N];
+      std::copy(v, v + N, index);
+      this->ToPlace(index, v);
+      for (int axis = 0; axis < N && this->IsJittered(); ++axis)
       {
-        for (std::size_t r = group.Begin; r < group.End; ++r)
+        v[axis] = hn::Add(v[axis], jitter[axis]);
+      }
+    }
+    // At the middle of the line: s, t and their changes with λ.
+    const V s = Dot(v, line.U);
+    V t[AxesAcross];
+    V sStep;
+    if constexpr (N == 2)
+    {
+      t[0] = hn::MulSub(line.U[0], v[1], hn::Mul(line.U[1], v[0]));
+      sStep = hn::MulSub(t[0], line.TurnAcross[0], line.AlongStep);
+    }
+    else
+    {
+      sStep = hn::Neg(line.AlongStep);
+      for (int axis = 0; axis < N; ++axis)
+      {
+        t[axis] = hn::NegMulAdd(s, line.U[axis], v[axis]);
+        sStep = hn::MulAdd(v[axis], line.TurnAcross[axis], sStep);
+      }
+    }
+    V step[AxesAcross];
+    for (int axis = 0; axis < AxesAcross; ++axis)
+    {
+      step[axis] =
+        hn::MulAdd(s, line.TurnAcross[axis], line.StepAcross[axis]);
+    }
+    if (this->Setup.Curved)
+    {
+      const V sag = hn::Mul(hn::Mul(s, s), Const(0.5f));
+      const V sagStep = hn::Mul(s, sStep);
+      for (int axis = 0; axis < AxesAcross; ++axis)
+      {
+        const V bend = line.BendAcross[axis];
+        t[axis] = hn::NegMulAdd(sag, bend, t[axis]);
+        step[axis] = hn::MulAdd(sag, line.ChangeAcross[axis], step[axis]);
+        step[axis] = hn::MulAdd(sagStep, bend, step[axis]);
+      }
+    }
+    const V shortest = hn::Sub(hn::Sub(hn::Abs(s), hn::Abs(sStep)), line.AlongRest);
+    const V width = hn::Add(Quadratic(line.Rest, hn::Abs(s)),
+      GetTaper(shortest, Const(1.0f / this->Surflet.HalfLength),
+        Const(this->Surflet.HalfWidth), this->Surflet.Tapers));
+    // |t - λ step| at the λ where it is least.
+    if constexpr (N == 2)
+    {
+      return hn::Le(hn::Sub(hn::Abs(t[0]), hn::Abs(step[0])), width);
+    }
+    else
+    {
+      const V one = Const(1.0f);
+      const V tStep = Dot(t, step);
+      const V step2 = hn::Add(Dot(step, step), Const(1e-20f));
+      const V best = hn::Max(hn::Min(hn::Div(tStep, step2), one), hn::Neg(one));
+      const V least = hn::MulAdd(hn::MulSub(best, step2, hn::Add(tStep, tStep)), best, Dot(t, t));
+      return hn::And(hn::Le(least, hn::MulAdd(width, width, Const(1e-5f))),
+        hn::Ge(width, hn::Zero(DF())));
+    }
+  }
+
+  /// Bits of the corners on the list that reach samples of a register.
+  WALK_INLINE std::uint64_t GetReaching(std::size_t r, const CornerList<N>& list) const
+  {
+    const Line<N> line(this->GroupLines, r, this->Cell);
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < list.Count; i += Lanes)
+    {
+      V offset[N];
+      V jitter[N];
+      LoadAll(list.Offset, i, offset);
+      LoadAll(list.Jitter, i, jitter);
+      bits |= ToBits(this->IsReached(line, offset, jitter)) << i;
+    }
+    return bits;
+  }
+
+  /// The reach of several registers as a line, which is what rows are continued by.
+  WALK_INLINE Line<N> GetLine(const Reach<N>& reach) const
+  {
+    const V half = Const(0.5f);
+    const V zero = hn::Zero(DF());
+    Line<N> line;
+    V step[N];
+    line.AlongStep = hn::Mul(reach.RowSpread, reach.U[0]);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      line.Place[axis] = reach.Place[axis];
+      line.U[axis] = reach.U[axis];
+      step[axis] =
+        hn::NegMulAdd(line.AlongStep, reach.U[axis], axis == 0 ? reach.RowSpread : zero);
+    }
+    ToAcross(step, reach.U, line.StepAcross);
+    ToAcross(reach.Bend, reach.U, line.BendAcross);
+    std::fill_n(line.TurnAcross, Line<N>::AxesAcross, zero);
+    std::fill_n(line.ChangeAcross, Line<N>::AxesAcross, zero);
+    // Jitter, which is not known yet, counts as a rest; and so does the change of the sag.
+    const V radius = Const(this->Setup.JitterRadius);
+    const V more = hn::Add(radius, hn::Abs(line.AlongStep));
+    line.AlongRest = hn::Add(reach.AlongReach, radius);
+    line.Rest[0] = hn::Add(Quadratic(reach.Across, more), this->GetLooseness(reach));
+    line.Rest[0] = hn::MulAdd(hn::Mul(half, reach.BendLength),
+      hn::Mul(line.AlongStep, line.AlongStep), line.Rest[0]);
+    line.Rest[1] = hn::MulAdd(hn::Add(more, more), reach.Across[2], reach.Across[1]);
+    line.Rest[2] = reach.Across[2];
+    return line;
+  }
+
+  /// Takes corners off the list that reach none of the registers, from where that was done before on.
+  HWY_NOINLINE void Sift(const Reach<N>& reach, CornerList<N>& list) const
+  {
+    if (!this->Params.AnisotropicWeight)
+    {
+      return;
+    }
+    const Line<N> line = this->GetLine(reach);
+    V middle[N];
+    std::fill_n(middle, N, Const(this->Setup.JitterMiddle));
+    std::size_t kept = list.Sifted;
+    for (std::size_t i = list.Sifted; i < list.Count; i += Lanes)
+    {
+      V offset[N];
+      for (int axis = 0; axis < N; ++axis)
+      {
+        offset[axis] = hn::ConvertTo(DF(), hn::LoadU(DI(), list.Index[axis] + i));
+      }
+      const auto listed = hn::FirstN(DF(), list.Count - i);
+      std::uint64_t bits = ToBits(hn::And(this->IsReached(line, offset, middle), listed));
+      for (; bits != 0; bits &= bits - 1, ++kept)
+      {
+        const std::size_t from = i + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
+        for (auto& index : list.Index)
         {
-          bits[r] |= ToBits(listed) << i;
+          index[kept] = index[from];
         }
       }
-      this->Put(this->Describe(offset, hash), list, i);
     }
-    for (std::size_t r = group.Begin; r < group.End; ++r)
+    list.Count = list.Sifted = kept;
+  }
+
+  /// Window of a corner on all axes but the first.
+  WALK_INLINE V GetRowWindow(const Sample<N>& sample, const V (&offset)[N]) const
+  {
+    V window = Const(1.0f);
+    for (int axis = 1; axis < N; ++axis)
     {
-      this->AddSurflets(r, list, bits[r]);
+      const V v = hn::Sub(hn::Sub(offset[axis], sample.Shift[axis]), sample.Fraction[axis]);
+      window = hn::Mul(window, QuinticFade(hn::Mul(hn::Abs(v), this->InverseReach)));
+    }
+    return window;
+  }
+
+  WALK_INLINE void SetRowWindows(const Sample<N>& sample, CornerList<N>& list) const
+  {
+    if constexpr (Aligned && !Variant)
+    {
+      // All lanes of the sample are the same here.
+      for (std::size_t i = 0; i < list.Count; i += Lanes)
+      {
+        V offset[N];
+        LoadAll(list.Offset, i, offset);
+        hn::Store(this->GetRowWindow(sample, offset), DF(), list.RowWindow + i);
+      }
     }
   }
 
   /// Adds the corners whose bits are set.
-  HWY_NOINLINE void AddSurflets(std::size_t r, const CornerList<N>& list, std::uint64_t bits)
+  template <bool Curved, bool Squares>
+  HWY_NOINLINE void AddSurflets(
+    const Sample<N>& sample, const CornerList<N>& list, std::uint64_t bits, Sums& total)
   {
-    const Sample sample{ this->F[r], this->P[r].Fraction, this->Shift[r], this->CrossFraction[r] };
-    Sums sums = this->Total[r];
-    this->Visited += this->GetCount(r) * hwy::PopCount(bits);
+    Sums sums = total;
     for (; bits != 0; bits &= bits - 1)
     {
-      const std::size_t corner = hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
-      this->AddSurflet(sample, Corner<N>(list, corner), sums);
+      Corner<N> corner(list, hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+      if constexpr (!Aligned)
+      {
+        corner.RowWindow = this->GetRowWindow(sample, corner.Offset);
+      }
+      this->template AddSurflet<Curved, Squares>(sample, corner, sums);
     }
-    this->Total[r] = sums;
+    total = sums;
   }
 
   // ---- surflets ---------------------------------------------------------------------------------
 
-  /// A register of samples.
-  struct Sample
-  {
-    const Frame<N>& F;
-    const V (&Fraction)[N];
-    const V (&Shift)[N];
-    const V& CrossFraction;
-  };
-
   WALK_INLINE V GetWindow(const Corner<N>& corner, const V (&v)[N]) const
   {
-    if (!this->Params.LatticeWindow)
-    {
-      return Const(1.0f);
-    }
     if constexpr (!Variant)
     {
-      V window = QuinticFade(hn::Mul(hn::Abs(v[0]), this->InverseReach));
-      if constexpr (Aligned)
-      {
-        return hn::Mul(corner.RowWindow, window);
-      }
-      for (int axis = 1; axis < N; ++axis)
-      {
-        window = hn::Mul(window, QuinticFade(hn::Mul(hn::Abs(v[axis]), this->InverseReach)));
-      }
-      return window;
+      return hn::Mul(
+        corner.RowWindow, QuinticFade(hn::Mul(hn::Abs(v[0]), this->InverseReach)));
     }
     else
     {
@@ -1214,176 +1615,146 @@ private:
     }
   }
 
-  WALK_INLINE void AddSurflet(const Sample& sample, const Corner<N>& corner, Sums& sums) const
+  /// `Curved`: bends count. `Squares`: the sum of variances is wanted.
+  template <bool Curved, bool Squares>
+  WALK_INLINE void AddSurflet(const Sample<N>& sample, const Corner<N>& corner, Sums& sums) const
   {
     V offset[N];
     V v[N];
     for (int axis = 0; axis < N; ++axis)
     {
-      offset[axis] = corner.Offset[axis];
-      if (!Aligned || axis == 0)
-      {
-        offset[axis] = hn::Sub(offset[axis], sample.Shift[axis]);
-      }
-      v[axis] = Aligned && !Variant && axis > 0 ? corner.FromRow[axis]
-                                                : hn::Sub(offset[axis], sample.Fraction[axis]);
+      offset[axis] = hn::Sub(corner.Offset[axis], sample.Shift[axis]);
+      v[axis] = hn::Sub(offset[axis], sample.Fraction[axis]);
     }
     if constexpr (Variant)
     {
       V index[N];
-      for (int axis = 0; axis < N; ++axis)
-      {
-        index[axis] = v[axis];
-      }
+      std::copy(v, v + N, index);
       this->ToPlace(index, v);
-      for (int axis = 0; axis<N&& this->Setup.JitterRadius> 0.0f; ++axis)
+      for (int axis = 0; axis < N && this->IsJittered(); ++axis)
       {
         v[axis] = hn::Add(v[axis], corner.Jitter[axis]);
       }
     }
+    V weight = this->GetWindow(corner, v);
 
-    // Along the flow and across it: s, and t as a vector (in 2D as a number along the normal n).
-    V s = Dot(v, sample.F.U);
-    V t[N];
+    // q = S² + T²; g G v' as its part along the flow and that across it; |G v'|².
+    V sigma; // S, the distance along the flow in half-lengths
+    V across2;
+    V q;
+    V slope;
+    V slope2 = hn::Zero(DF());
+    const V(&g)[N] = corner.Gradient;
     if constexpr (N == 2)
     {
-      // u x v for a far corner is a small difference of large products. The high parts of u have
-      // 16 bits, so their products with corners and the difference are exact.
-      t[0] = Variant ? hn::MulSub(sample.F.U[0], v[1], hn::Mul(sample.F.U[1], v[0]))
-                     : hn::Add(hn::NegMulAdd(sample.F.UHigh[1], offset[0],
-                                 hn::Mul(sample.F.UHigh[0], offset[1])),
-                         hn::NegMulAdd(sample.F.ULow[1], offset[0],
-                           hn::MulSub(sample.F.ULow[0], offset[1], sample.CrossFraction)));
-    }
-    else
-    {
-      for (int i = 0; i < N; ++i)
+      V T;
+      if constexpr (Variant)
       {
-        t[i] = hn::NegMulAdd(s, sample.F.U[i], v[i]);
-      }
-      // u has not quite length 1 and s is rounded: what t still has of u is large beside it.
-      const V rest = Dot(t, sample.F.U);
-      for (int i = 0; i < N; ++i)
-      {
-        t[i] = hn::NegMulAdd(rest, sample.F.U[i], t[i]);
-      }
-      s = hn::Add(s, rest);
-    }
-    if (this->Setup.Curved)
-    {
-      const V sag = hn::Mul(hn::Mul(Const(0.5f), s), s);
-      if constexpr (N == 2)
-      {
-        t[0] = hn::NegMulAdd(sag, sample.F.BendAcross, t[0]);
+        sigma = Dot(v, sample.ScaledU);
+        T = Dot(v, sample.ScaledN);
       }
       else
       {
+        // n . v for a far corner is a small difference of large products. The high parts of n have
+        // 16 bits, so their products with whole offsets and the difference are exact.
+        sigma = hn::MulAdd(sample.ScaledU[0], offset[0],
+          hn::MulSub(sample.ScaledU[1], offset[1], sample.AlongFraction));
+        T = hn::Add(
+          hn::MulAdd(sample.HighN[0], offset[0], hn::Mul(sample.HighN[1], offset[1])),
+          hn::MulAdd(sample.LowN[0], offset[0],
+            hn::MulSub(sample.LowN[1], offset[1], sample.AcrossFraction)));
+      }
+      if constexpr (Curved)
+      {
+        T = hn::NegMulAdd(hn::Mul(sigma, sigma), sample.ScaledSag, T);
+      }
+      sigma = this->Travelled(sample, corner, sigma);
+      const V sigma2 = hn::Mul(sigma, sigma);
+      across2 = hn::Mul(T, T);
+      q = hn::Add(sigma2, across2);
+      slope = hn::MulAdd(sigma, Dot(sample.ScaledU, g), hn::Mul(T, Dot(sample.ScaledN, g)));
+      if constexpr (Squares)
+      {
+        slope2 = hn::MulAdd(sample.Along, sigma2, hn::Mul(sample.Across, across2));
+      }
+    }
+    else
+    {
+      const V s = Dot(v, sample.U);
+      V t[N];
+      for (int i = 0; i < N; ++i)
+      {
+        t[i] = hn::NegMulAdd(s, sample.U[i], v[i]);
+      }
+      if constexpr (Curved)
+      {
+        const V sag = hn::Mul(hn::Mul(Const(0.5f), s), s);
         for (int i = 0; i < N; ++i)
         {
-          t[i] = hn::NegMulAdd(sag, sample.F.Bend[i], t[i]);
+          t[i] = hn::NegMulAdd(sag, sample.Bend[i], t[i]);
         }
       }
-    }
-    if constexpr (Variant)
-    {
-      if (this->Params.Motion)
+      const V t2 = Dot(t, t);
+      across2 = hn::Mul(sample.Across, t2);
+      sigma = this->Travelled(sample, corner, hn::Mul(sample.RootAlong, s));
+      const V ks = hn::Mul(sample.RootAlong, sigma);
+      // s is rounded and u has not quite length 1: what t still has of u is large beside it. It does
+      // not change t² but g . t.
+      const V rest = Dot(t, sample.U);
+      slope = hn::MulAdd(hn::NegMulAdd(sample.Across, rest, ks), Dot(sample.U, g),
+        hn::Mul(sample.Across, Dot(t, g)));
+      if constexpr (Squares)
       {
-        s = hn::MulAdd(hn::Mul(corner.Travel, sample.F.Sense),
-          hn::Div(Const(1.0f), hn::Sqrt(sample.F.Along)), s);
+        slope2 = hn::MulAdd(ks, ks, hn::Mul(sample.Across, across2));
       }
+      if (this->Setup.Biaxial)
+      {
+        const V r = Dot(t, sample.M);
+        const V more = hn::Mul(hn::Sub(sample.Second, sample.Across), r);
+        across2 = hn::MulAdd(more, r, across2);
+        slope = hn::MulAdd(more, Dot(sample.M, g), slope);
+        slope2 = hn::MulAdd(hn::Mul(more, hn::Add(sample.Second, sample.Across)), r, slope2);
+      }
+      q = hn::MulAdd(sigma, sigma, across2);
     }
 
-    const V ks = hn::Mul(sample.F.Along, s);
-    const V t2 = N == 2 ? hn::Mul(t[0], t[0]) : Dot(t, t);
-    V across2 = hn::Mul(sample.F.Across, t2);
-    V r = hn::Zero(DF());
-    if (N == 3 && this->Setup.Biaxial)
-    {
-      r = Dot(t, sample.F.M);
-      across2 = hn::MulAdd(hn::Mul(hn::Sub(sample.F.Second, sample.F.Across), r), r, across2);
-    }
-    const V q = hn::MulAdd(ks, s, across2);
-    V weight = this->GetWindow(corner, v);
-
-    V amplified = weight;
+    V amplitude = weight;
     if constexpr (Variant)
     {
-      const V amplitude = corner.Amplitude;
       if (this->Params.Surflet == Basis::Streaks)
       {
-        this->AddStreak(sample, amplitude, weight, s, across2, sums);
-        return;
+        const V across = hn::Sqrt(hn::Max(across2, hn::Zero(DF())));
+        weight = hn::Mul(hn::Mul(weight, sample.Sense),
+          hn::Mul(StreakProfile(hn::Neg(sigma)), FadeOf(this->Params.Interpolant, across)));
       }
-      if (this->Params.AnisotropicWeight)
+      else if (this->Params.AnisotropicWeight)
       {
         weight = hn::Mul(weight, FadeOf(this->Params.Interpolant, q));
       }
-      amplified = hn::Mul(amplitude, weight);
-      if (this->Params.Surflet == Basis::Value)
+      amplitude = hn::Mul(corner.Amplitude, weight);
+      if (this->Params.Surflet != Basis::Gradient)
       {
-        sums.Noise = hn::MulAdd(amplified, corner.Gradient[0], sums.Noise);
-        sums.Variance = hn::MulAdd(hn::Mul(weight, weight), Const(1.0f / 3.0f), sums.Variance);
-        sums.Weight = hn::Add(sums.Weight, weight);
-        return;
+        slope = this->Params.Surflet == Basis::Value ? g[0] : Const(1.0f);
+        slope2 = Const(1.0f);
       }
     }
     else
     {
       weight = hn::Mul(weight, QuinticFade(q));
-      amplified = weight;
+      amplitude = weight;
     }
-
-    // G v' in the axes of the metric, then the gradient.
-    V Gv[N];
-    if constexpr (N == 2)
+    sums.Noise = hn::MulAdd(amplitude, slope, sums.Noise);
+    sums.Weight = hn::Add(sums.Weight, weight);
+    if constexpr (Squares)
     {
-      const V bt = hn::Mul(sample.F.Across, t[0]);
-      Gv[0] = hn::MulSub(ks, sample.F.U[0], hn::Mul(bt, sample.F.U[1]));
-      Gv[1] = hn::MulAdd(ks, sample.F.U[1], hn::Mul(bt, sample.F.U[0]));
-    }
-    else
-    {
-      for (int i = 0; i < N; ++i)
-      {
-        Gv[i] = hn::MulAdd(ks, sample.F.U[i], hn::Mul(sample.F.Across, t[i]));
-      }
-      if (this->Setup.Biaxial)
-      {
-        const V er = hn::Mul(hn::Sub(sample.F.Second, sample.F.Across), r);
-        for (int i = 0; i < N; ++i)
-        {
-          Gv[i] = hn::MulAdd(er, sample.F.M[i], Gv[i]);
-        }
-      }
-    }
-    V g[N];
-    for (int axis = 0; axis < N; ++axis)
-    {
-      g[axis] = corner.Gradient[axis];
-    }
-    sums.Noise = hn::MulAdd(amplified, Dot(g, Gv), sums.Noise);
-    if (this->Params.Normalize == Normalization::UnitVariance)
-    {
-      sums.Variance = hn::MulAdd(
-        hn::Mul(hn::Mul(weight, weight), this->GradientPower), Dot(Gv, Gv), sums.Variance);
-    }
-    else
-    {
-      sums.Weight = hn::Add(sums.Weight, weight);
+      sums.Variance = hn::MulAdd(hn::Mul(weight, weight), slope2, sums.Variance);
     }
   }
 
-  WALK_INLINE void AddStreak(
-    const Sample& sample, V amplitude, V window, V s, V across2, Sums& sums) const
+  /// Where the surflet of a corner stands on its way along the flow.
+  WALK_INLINE V Travelled(const Sample<N>& sample, const Corner<N>& corner, V sigma) const
   {
-    const V sigma = hn::Neg(hn::Mul(s, hn::Sqrt(sample.F.Along)));
-    const V across = hn::Sqrt(hn::Max(across2, Const(0.0f)));
-    const V profile = hn::Mul(hn::Mul(window, sample.F.Sense),
-      hn::Mul(StreakProfile(sigma), FadeOf(this->Params.Interpolant, across)));
-    const auto density = static_cast<float>(this->Params.Density);
-    sums.Noise = hn::MulAdd(amplitude, profile, sums.Noise);
-    sums.Variance = hn::MulAdd(hn::Mul(Const(density), profile), profile, sums.Variance);
-    sums.Weight = hn::Add(sums.Weight, profile);
+    return Variant && this->Params.Motion ? hn::MulAdd(corner.Travel, sample.Sense, sigma) : sigma;
   }
 
   /// Samples that are farther apart than this, as their surflets see it, do not share a list.
@@ -1395,16 +1766,20 @@ private:
   const NoiseSetup& Setup;
   const NoiseParameters& Params;
   const OctaveSetup& Octave;
+  const MetricBlock& Block;
+  /// Eigenvalues of this octave.
+  const float* Along;
+  const float* Across;
+  const float* Second;
   V InverseReach;
-  /// Variance of a gradient's component.
-  V GradientPower;
-  std::size_t Count = 0;
+  /// From 0 at the first lane to 1 at the last.
+  V LaneStep;
+  std::size_t First[TileRegisters];
+  std::size_t Count[TileRegisters];
   std::uint64_t Visited = 0;
-  Frame<N> F[TileRegisters];
-  Places<N> P[TileRegisters];
-  V CrossFraction[TileRegisters];
-  /// The cells that offsets count from, and the samples' own cells from there.
+  Lines<N> GroupLines;
+  Extent Surflet;
+  /// The cells that offsets count from.
   VU Cell[N];
-  V Shift[TileRegisters][N];
   Sums Total[TileRegisters];
 };

@@ -83,8 +83,8 @@ NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field
   setup.Curved = curved;
   setup.SingleCell = p.Quality == 0 && !setup.Variant && p.LatticeWindow && !setup.Biaxial && !curved &&
     p.Normalize == Normalization::None;
-  setup.Uniform =
-    setup.SingleCell && p.StrengthBy == StrengthMode::Constant && !(p.MaskThreshold > 0.0);
+  setup.Uniform = setup.SingleCell && p.StrengthBy == StrengthMode::Constant &&
+    !(p.MaskThreshold > 0.0) && p.Octaves == 1 && !p.Turbulence;
   setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;
   const bool jittered = p.Grid == Lattice::Jittered;
   const bool streaks = p.Surflet == Basis::Streaks && !jittered;

@@ -205,11 +205,12 @@ WALK_INLINE V SumOverCell(
     V distance = q;
     std::copy(Gv, Gv + N, at);
     corners.GetGradient(0, g);
-    const V lower = hn::Mul(PlainQuinticFade(distance), Dot(g, at));
+    const V fade = PlainQuinticFade(distance);
+    const V slope = Dot(g, at);
     step(0, at, distance);
     corners.GetGradient(1, g);
     const V upper = hn::Mul(PlainQuinticFade(distance), Dot(g, at));
-    return hn::MulAdd(near[0], hn::Sub(lower, upper), upper);
+    return hn::MulAdd(near[0], hn::MulSub(fade, slope, upper), upper);
   };
   const auto addSlice = [&](int oz) HWY_ATTR
   {

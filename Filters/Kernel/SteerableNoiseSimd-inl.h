@@ -246,17 +246,16 @@ HWY_NOINLINE void WalkPatch(const NoiseSetup& setup, const OctaveSetup& octave, 
 
 /**
  * The same for Quality 0 without extensions; `getPlaces` also gives the windows of the lower corners.
- * `uniform`: the metrics have the same strength.
+ * `direct`: where the noise goes if all is uniform, see NoiseSetup; else null.
  */
 template <int N, class Corners, class GetPlaces>
 WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
-  std::size_t count, bool uniform, Corners& corners, std::uint64_t& visited, GetPlaces&& getPlaces)
+  std::size_t count, float* direct, Corners& corners, std::uint64_t& visited, GetPlaces&& getPlaces)
 {
   const EigenvalueRange range = VectorEigenvalues(setup.Parameters, N);
   const V strength = Const(static_cast<float>(setup.Parameters.Strength));
   const V along = AtStrength(range.Along, strength);
   const V across = AtStrength(range.Across, strength);
-  const bool alone = setup.Octaves.size() == 1 && !setup.Parameters.Turbulence;
   for (std::size_t i = 0; i < count; i += Lanes)
   {
     Places<N> places;
@@ -268,16 +267,21 @@ WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, Me
     {
       u[axis] = Load(block.U[axis] + i);
     }
-    const V k = uniform ? along : Load(block.Along + i);
-    const V b = uniform ? across : Load(block.Across + i);
+    const V k = direct ? along : Load(block.Along + i);
+    const V b = direct ? across : Load(block.Across + i);
     const V noise = SumOverCell<N>(u, k, b, places.Fraction, near, corners);
-    if (alone)
+    if (!direct)
     {
-      hn::StoreU(noise, DF(), block.Noise + i);
+      AddOctave(setup, octave, block, i, noise);
+    }
+    else if (i + Lanes <= count)
+    {
+      hn::StoreU(noise, DF(), direct + i);
     }
     else
     {
-      AddOctave(setup, octave, block, i, noise);
+      hn::Store(noise, DF(), block.Noise);
+      std::copy_n(block.Noise, count - i, direct + i);
     }
   }
   visited += count << N;
@@ -287,14 +291,9 @@ WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, Me
 
 /// Masks, counts and hands out the noise of samples [at, at + count) of a block.
 void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t at, std::size_t count,
-  bool uniform, float* noise, EvaluationCounts& counts)
+  float* noise, EvaluationCounts& counts)
 {
   float* const from = block.Noise + at;
-  if (uniform)
-  {
-    std::copy(from, from + count, noise);
-    return;
-  }
   float* const there = block.Sense + at;
   const auto threshold = static_cast<float>(setup.Parameters.MaskThreshold);
   V senses = hn::Zero(DF());
@@ -397,13 +396,13 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
 /// Adds one octave to samples at these positions.
 template <int N>
 void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double* positions,
-  std::size_t count, bool uniform, MetricBlock& block, std::uint64_t& visited)
+  std::size_t count, float* direct, MetricBlock& block, std::uint64_t& visited)
 {
   LocatePoints<N>(setup, octave, positions, 0, count, block);
   if (setup.SingleCell)
   {
     LaneCorners<N> corners(octave);
-    AddCells<N>(setup, octave, block, count, uniform, corners, visited,
+    AddCells<N>(setup, octave, block, count, direct, corners, visited,
       [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
       {
         for (int axis = 0; axis < N; ++axis)
@@ -634,7 +633,7 @@ void LocatePatch(const NoiseSetup& setup, const ImageGrid& grid, const OctaveSet
 /// One octave of a row of an image at Quality 0 without extensions.
 template <int N>
 void AddRowOfCells(const NoiseSetup& setup, const ImageGrid& grid, const OctaveSetup& octave,
-  ImageOctave<N>& image, const Patch& patch, bool uniform, MetricBlock& block,
+  ImageOctave<N>& image, const Patch& patch, float* direct, MetricBlock& block,
   std::uint64_t& visited)
 {
   std::int64_t cell[3] = { 0, 0, 0 };
@@ -665,12 +664,12 @@ void AddRowOfCells(const NoiseSetup& setup, const ImageGrid& grid, const OctaveS
   {
     image.Rows->MoveTo(cell[1], cell[2]);
     RowCorners<N> corners(*image.Rows);
-    AddCells<N>(setup, octave, block, patch.Columns, uniform, corners, visited, getPlaces);
+    AddCells<N>(setup, octave, block, patch.Columns, direct, corners, visited, getPlaces);
   }
   else
   {
     LaneCorners<N> corners(octave);
-    AddCells<N>(setup, octave, block, patch.Columns, uniform, corners, visited, getPlaces);
+    AddCells<N>(setup, octave, block, patch.Columns, direct, corners, visited, getPlaces);
   }
 }
 
@@ -685,7 +684,7 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
   {
     return counts;
   }
-  auto block = std::make_unique<MetricBlock>();
+  const std::unique_ptr<MetricBlock> block(new MetricBlock); // not zeroed: what is read is written before
   std::vector<ImageOctave<N>> octaves;
   for (const OctaveSetup& octave : setup.Octaves)
   {
@@ -706,7 +705,7 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
   }
 
   const std::int64_t mostRows = setup.SingleCell ? 1 : TileRegisters;
-  const std::int64_t mostColumns = setup.SingleCell ? BlockSize : PatchColumns;
+  const std::int64_t mostColumns = setup.SingleCell ? 256 : PatchColumns;
   Patch patch;
   for (std::size_t row = rowBegin; row < rowEnd; row += patch.Rows)
   {
@@ -732,13 +731,14 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
           std::fill_n(block->Noise + at, patch.Columns + Lanes, 0.0f);
         }
       }
+      float* const direct = uniform ? noise + firstOf(0) : nullptr;
       for (std::size_t o = 0; o < octaves.size(); ++o)
       {
         const OctaveSetup& octave = setup.Octaves[o];
         if (setup.SingleCell)
         {
           AddRowOfCells<N>(
-            setup, grid, octave, octaves[o], patch, uniform, *block, counts.VisitedCorners);
+            setup, grid, octave, octaves[o], patch, direct, *block, counts.VisitedCorners);
           continue;
         }
         LocatePatch<N>(setup, grid, octave, octaves[o], patch, *block);
@@ -749,9 +749,9 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
         const auto walk = setup.Variant ? &WalkPatch<N, true> : &WalkPatch<N, false>;
         walk(setup, octave, *block, patch.Rows, patch.Columns, counts.VisitedCorners);
       }
-      for (std::size_t r = 0; r < patch.Rows; ++r)
+      for (std::size_t r = 0; r < patch.Rows && !uniform; ++r)
       {
-        Finish(setup, *block, Patch::At(r), patch.Columns, uniform, noise + firstOf(r), counts);
+        Finish(setup, *block, Patch::At(r), patch.Columns, noise + firstOf(r), counts);
       }
     }
   }
@@ -765,7 +765,7 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
   const Field& field, std::size_t begin, std::size_t end, float* noise)
 {
   EvaluationCounts counts;
-  auto block = std::make_unique<MetricBlock>();
+  const std::unique_ptr<MetricBlock> block(new MetricBlock); // not zeroed: what is read is written before
   for (std::size_t first = begin; first < end; first += BlockSize)
   {
     const std::size_t count = std::min(BlockSize, end - first);
@@ -781,9 +781,13 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     const double* place = positions.Read(first, count, block->Positions);
     for (const OctaveSetup& octave : setup.Octaves)
     {
-      AddPoints<N>(setup, octave, place, count, uniform, *block, counts.VisitedCorners);
+      AddPoints<N>(
+        setup, octave, place, count, uniform ? noise + first : nullptr, *block, counts.VisitedCorners);
     }
-    Finish(setup, *block, 0, count, uniform, noise + first, counts);
+    if (!uniform)
+    {
+      Finish(setup, *block, 0, count, noise + first, counts);
+    }
   }
   return counts;
 }

@@ -71,7 +71,7 @@ struct NoiseSetup
   bool Variant;
   /// Nothing but the 2^N corners of the cell and no sums: Rice's Quality 0.
   bool SingleCell;
-  /// The same with one strength for all vectors.
+  /// The same with one strength for all vectors, and nothing to do with the sum but to hand it out.
   bool Uniform;
   /// 0: a sample belongs to the corner below it. 1/2: to the nearest one, from which its distance has a
   /// float's full relative precision; normalisation would show less.

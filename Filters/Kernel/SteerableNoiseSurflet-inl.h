@@ -4,14 +4,30 @@
 
 /**
  * Kensler's quintic for t >= 0, exactly 0 from t = 1 on. With r = 1 - t it is r³ (6t² + 3t + 1), which
- * keeps its relative precision where it is small: normalisation would show what is lost there.
+ * keeps its relative precision where it is small: normalisation would show what is lost there. Here r and
+ * the other factor.
  */
-HWY_INLINE V QuinticFade(V t)
+HWY_INLINE V QuinticFactors(V t, V& inner)
 {
   t = hn::Min(t, Const(1.0f));
-  const V r = hn::Sub(Const(1.0f), t);
-  const V inner = hn::MulAdd(hn::MulAdd(Const(6.0f), t, Const(3.0f)), t, Const(1.0f));
+  inner = hn::MulAdd(hn::MulAdd(Const(6.0f), t, Const(3.0f)), t, Const(1.0f));
+  return hn::Sub(Const(1.0f), t);
+}
+
+HWY_INLINE V QuinticFade(V t)
+{
+  V inner;
+  const V r = QuinticFactors(t, inner);
   return hn::Mul(hn::Mul(hn::Mul(r, r), r), inner);
+}
+
+/// Product of two fades.
+HWY_INLINE V QuinticFades(V t, V u)
+{
+  V inner;
+  V other;
+  const V r = hn::Mul(QuinticFactors(t, inner), QuinticFactors(u, other));
+  return hn::Mul(hn::Mul(hn::Mul(r, r), r), hn::Mul(inner, other));
 }
 
 /// The same with its absolute precision only, two operations less: enough for a sum that nothing divides.

@@ -44,8 +44,9 @@ struct CornerList
   HWY_ALIGN float Jitter[N][ListSize];
   HWY_ALIGN float Travel[ListSize];
   HWY_ALIGN float Amplitude[ListSize];
-  /// Window on the axes that all samples of a register of an image share.
+  /// Of the axes that all samples of a register of an image share: window, and distances (3D).
   HWY_ALIGN float RowWindow[ListSize];
+  HWY_ALIGN float FromRow[N][ListSize];
 };
 
 /// The same of a corner for the lanes of a register.
@@ -58,6 +59,7 @@ struct Corner
   V Travel;
   V Amplitude;
   V RowWindow;
+  V FromRow[N];
 
   WALK_INLINE Corner() {}
   /// One corner of a list for all lanes.
@@ -71,6 +73,7 @@ struct Corner
       this->Offset[axis] = Const(list.Offset[axis][i]);
       this->Gradient[axis] = Const(list.Gradient[axis][i]);
       this->Jitter[axis] = Const(list.Jitter[axis][i]);
+      this->FromRow[axis] = Const(list.FromRow[axis][i]);
     }
   }
 };
@@ -457,12 +460,17 @@ private:
   /// Registers [begin, end): together if they are alike, else half by half.
   HWY_NOINLINE void AddSpan(std::size_t begin, std::size_t end)
   {
-    const Reach<N> reach = this->GetReach(begin, end);
-    if (hn::GetLane(reach.LargestWidth) - this->Surflet.HalfWidth < LargestSpread)
+    const float* rest = this->GroupLines.PlaceRest;
+    if (*std::max_element(rest + begin, rest + end) < LargestSpread) // else it cannot be
     {
-      this->AddTogether(begin, end, reach);
+      const Reach<N> reach = this->GetReach(begin, end);
+      if (hn::GetLane(reach.LargestWidth) - this->Surflet.HalfWidth < LargestSpread)
+      {
+        this->AddTogether(begin, end, reach);
+        return;
+      }
     }
-    else if (end - begin > 1)
+    if (end - begin > 1)
     {
       const std::size_t middle = (begin + end) / 2;
       this->AddSpan(begin, middle);
@@ -1225,8 +1233,8 @@ private:
         Corner<N> described = this->Describe(offset, this->HashCorners(corner));
         described.RowWindow = this->GetRowWindow(sample, offset);
         this->WithKind(
-          [&](auto curved, auto squares) HWY_ATTR {
-            this->template AddSurflet<curved(), squares()>(sample, described, this->Total[r]);
+          [&](auto curved, auto normalize) HWY_ATTR {
+            this->template AddSurflet<curved(), normalize()>(sample, described, this->Total[r]);
           });
         this->Visited += this->Count[r];
       }
@@ -1353,28 +1361,34 @@ private:
       }
       this->Visited += this->Count[r] * hwy::PopCount(bits);
       const Sample<N> sample(this->Setup, this->Block, this->First[r], this->Cell);
-      this->SetRowWindows(sample, list);
+      this->SetFromRow(sample, list);
       this->WithKind(
-        [&](auto curved, auto squares) HWY_ATTR {
-          this->template AddSurflets<curved(), squares()>(sample, list, bits, this->Total[r]);
+        [&](auto curved, auto normalize) HWY_ATTR {
+          this->template AddSurflets<curved(), normalize()>(sample, list, bits, this->Total[r]);
         });
     }
   }
 
-  /// Calls `work` with what surflets take into account, as types: bends, and the sum of variances.
+  /// Calls `work` with what surflets take into account, as types: bends, and which sums are wanted.
   template <class Work>
   WALK_INLINE void WithKind(Work&& work) const
   {
-    constexpr std::true_type yes;
-    constexpr std::bool_constant<Variant> no; // there variants are not worth more code
-    const bool squares = this->Params.Normalize == Normalization::UnitVariance;
-    if (this->Setup.Curved)
+    constexpr std::bool_constant<Variant> straight; // there variants are not worth more code
+    this->Setup.Curved ? this->WithSums(work, std::true_type()) : this->WithSums(work, straight);
+  }
+
+  template <class Work, class Curved>
+  WALK_INLINE void WithSums(Work&& work, Curved curved) const
+  {
+    switch (this->Params.Normalize)
     {
-      squares ? work(yes, yes) : work(yes, no);
-    }
-    else
-    {
-      squares ? work(no, yes) : work(no, no);
+      case Normalization::UnitVariance:
+        return work(curved, std::integral_constant<Normalization, Normalization::UnitVariance>());
+      case Normalization::WeightSum:
+        return work(curved, std::integral_constant<Normalization, Normalization::WeightSum>());
+      case Normalization::None:
+      default:
+        return work(curved, std::integral_constant<Normalization, Normalization::None>());
     }
   }
 
@@ -1546,34 +1560,44 @@ private:
     list.Count = list.Sifted = kept;
   }
 
+  /// Distance of a corner on an axis, in cells.
+  static WALK_INLINE V GetDistance(const Sample<N>& sample, V offset, int axis)
+  {
+    return hn::Sub(hn::Sub(offset, sample.Shift[axis]), sample.Fraction[axis]);
+  }
+
   /// Window of a corner on all axes but the first.
   WALK_INLINE V GetRowWindow(const Sample<N>& sample, const V (&offset)[N]) const
   {
     V window = Const(1.0f);
     for (int axis = 1; axis < N; ++axis)
     {
-      const V v = hn::Sub(hn::Sub(offset[axis], sample.Shift[axis]), sample.Fraction[axis]);
+      const V v = GetDistance(sample, offset[axis], axis);
       window = hn::Mul(window, QuinticFade(hn::Mul(hn::Abs(v), this->InverseReach)));
     }
     return window;
   }
 
-  WALK_INLINE void SetRowWindows(const Sample<N>& sample, CornerList<N>& list) const
+  /// Sees to what all lanes of the sample have in common, for a register of corners at a time.
+  WALK_INLINE void SetFromRow(const Sample<N>& sample, CornerList<N>& list) const
   {
-    if constexpr (Aligned && !Variant)
+    if constexpr (Aligned)
     {
-      // All lanes of the sample are the same here.
       for (std::size_t i = 0; i < list.Count; i += Lanes)
       {
         V offset[N];
         LoadAll(list.Offset, i, offset);
         hn::Store(this->GetRowWindow(sample, offset), DF(), list.RowWindow + i);
+        for (int axis = 1; axis < N && N == 3; ++axis)
+        {
+          hn::Store(GetDistance(sample, offset[axis], axis), DF(), list.FromRow[axis] + i);
+        }
       }
     }
   }
 
   /// Adds the corners whose bits are set.
-  template <bool Curved, bool Squares>
+  template <bool Curved, Normalization Normalize>
   HWY_NOINLINE void AddSurflets(
     const Sample<N>& sample, const CornerList<N>& list, std::uint64_t bits, Sums& total)
   {
@@ -1585,46 +1609,41 @@ private:
       {
         corner.RowWindow = this->GetRowWindow(sample, corner.Offset);
       }
-      this->template AddSurflet<Curved, Squares>(sample, corner, sums);
+      this->template AddSurflet<Curved, Normalize>(sample, corner, sums);
     }
     total = sums;
   }
 
   // ---- surflets ---------------------------------------------------------------------------------
 
-  WALK_INLINE V GetWindow(const Corner<N>& corner, const V (&v)[N]) const
+  /// The window of variants.
+  WALK_INLINE V GetWindow(const V (&v)[N]) const
   {
-    if constexpr (!Variant)
+    const Fade fade = this->Params.Interpolant;
+    if (this->Params.Window == Falloff::Radial)
     {
-      return hn::Mul(
-        corner.RowWindow, QuinticFade(hn::Mul(hn::Abs(v[0]), this->InverseReach)));
+      return FadeOf(fade, hn::Mul(hn::Sqrt(Dot(v, v)), this->InverseReach));
     }
-    else
+    V product = FadeOf(fade, hn::Mul(v[0], this->InverseReach));
+    for (int axis = 1; axis < N; ++axis)
     {
-      const Fade fade = this->Params.Interpolant;
-      if (this->Params.Window == Falloff::Radial)
-      {
-        return FadeOf(fade, hn::Mul(hn::Sqrt(Dot(v, v)), this->InverseReach));
-      }
-      V product = FadeOf(fade, hn::Mul(v[0], this->InverseReach));
-      for (int axis = 1; axis < N; ++axis)
-      {
-        product = hn::Mul(product, FadeOf(fade, hn::Mul(v[axis], this->InverseReach)));
-      }
-      return product;
+      product = hn::Mul(product, FadeOf(fade, hn::Mul(v[axis], this->InverseReach)));
     }
+    return product;
   }
 
-  /// `Curved`: bends count. `Squares`: the sum of variances is wanted.
-  template <bool Curved, bool Squares>
+  /// `Curved`: bends count. Sums that `Normalize` has no use for are left out.
+  template <bool Curved, Normalization Normalize>
   WALK_INLINE void AddSurflet(const Sample<N>& sample, const Corner<N>& corner, Sums& sums) const
   {
+    constexpr bool squares = Normalize == Normalization::UnitVariance;
     V offset[N];
     V v[N];
     for (int axis = 0; axis < N; ++axis)
     {
       offset[axis] = hn::Sub(corner.Offset[axis], sample.Shift[axis]);
-      v[axis] = hn::Sub(offset[axis], sample.Fraction[axis]);
+      v[axis] = Aligned && N == 3 && axis > 0 ? corner.FromRow[axis]
+                                              : hn::Sub(offset[axis], sample.Fraction[axis]);
     }
     if constexpr (Variant)
     {
@@ -1636,8 +1655,6 @@ private:
         v[axis] = hn::Add(v[axis], corner.Jitter[axis]);
       }
     }
-    V weight = this->GetWindow(corner, v);
-
     // q = S² + T²; g G v' as its part along the flow and that across it; |G v'|².
     V sigma; // S, the distance along the flow in half-lengths
     V across2;
@@ -1671,9 +1688,9 @@ private:
       sigma = this->Travelled(sample, corner, sigma);
       const V sigma2 = hn::Mul(sigma, sigma);
       across2 = hn::Mul(T, T);
-      q = hn::Add(sigma2, across2);
+      q = Variant || squares ? hn::Add(sigma2, across2) : hn::MulAdd(T, T, sigma2);
       slope = hn::MulAdd(sigma, Dot(sample.ScaledU, g), hn::Mul(T, Dot(sample.ScaledN, g)));
-      if constexpr (Squares)
+      if constexpr (squares)
       {
         slope2 = hn::MulAdd(sample.Along, sigma2, hn::Mul(sample.Across, across2));
       }
@@ -1703,7 +1720,7 @@ private:
       const V rest = Dot(t, sample.U);
       slope = hn::MulAdd(hn::NegMulAdd(sample.Across, rest, ks), Dot(sample.U, g),
         hn::Mul(sample.Across, Dot(t, g)));
-      if constexpr (Squares)
+      if constexpr (squares)
       {
         slope2 = hn::MulAdd(ks, ks, hn::Mul(sample.Across, across2));
       }
@@ -1718,9 +1735,11 @@ private:
       q = hn::MulAdd(sigma, sigma, across2);
     }
 
-    V amplitude = weight;
+    V weight;
+    V amplitude;
     if constexpr (Variant)
     {
+      weight = this->GetWindow(v);
       if (this->Params.Surflet == Basis::Streaks)
       {
         const V across = hn::Sqrt(hn::Max(across2, hn::Zero(DF())));
@@ -1740,12 +1759,15 @@ private:
     }
     else
     {
-      weight = hn::Mul(weight, QuinticFade(q));
-      amplitude = weight;
+      const V away = hn::Mul(hn::Abs(v[0]), this->InverseReach);
+      amplitude = weight = hn::Mul(corner.RowWindow, QuinticFades(away, q));
     }
     sums.Noise = hn::MulAdd(amplitude, slope, sums.Noise);
-    sums.Weight = hn::Add(sums.Weight, weight);
-    if constexpr (Squares)
+    if constexpr (Normalize == Normalization::WeightSum)
+    {
+      sums.Weight = hn::Add(sums.Weight, weight);
+    }
+    if constexpr (squares)
     {
       sums.Variance = hn::MulAdd(hn::Mul(weight, weight), slope2, sums.Variance);
     }

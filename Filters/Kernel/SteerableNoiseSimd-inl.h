@@ -238,7 +238,7 @@ HWY_NOINLINE void WalkPatch(const NoiseSetup& setup, const OctaveSetup& octave, 
   {
     for (std::size_t r = 0; r < rows; ++r)
     {
-      walk.SetRegister(r, r * PatchColumns + i, std::min(Lanes, columns - i));
+      walk.SetRegister(r, r * PatchStride + i, std::min(Lanes, columns - i));
     }
     AddTile(setup, octave, block, walk, rows, visited);
   }
@@ -506,7 +506,7 @@ struct Patch
   std::size_t Rows;
 
   /// Where a row begins in the block.
-  static std::size_t At(std::size_t row) { return row * PatchColumns; }
+  static std::size_t At(std::size_t row) { return row * PatchStride; }
 };
 
 /// Directions u of a patch and their bend, without the parts of it that BendMetrics removes.

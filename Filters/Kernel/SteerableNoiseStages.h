@@ -18,13 +18,14 @@ namespace steerable
 {
 /// Samples that go through the stages together: their arrays stay in the nearest caches.
 constexpr std::size_t BlockSize = 512;
-/// Room for a whole SIMD register behind.
-constexpr std::size_t BlockRoom = BlockSize + 32;
 /// Registers of samples that share lists of corners where they can; in images one below the other.
 constexpr std::size_t TileRegisters = 8;
 /// Where walks want it, a block of an image is as many rows of this many samples.
 constexpr std::size_t PatchColumns = BlockSize / TileRegisters;
-/// Such a row with its neighbours to either side, and room behind.
+/// Room for a whole SIMD register behind each row, and behind the block.
+constexpr std::size_t PatchStride = PatchColumns + 16;
+constexpr std::size_t BlockRoom = TileRegisters * PatchStride + 16;
+/// A row with its neighbours to either side, and room behind.
 constexpr std::size_t RowRoom = PatchColumns + 2 * ImageGrid::MaximumStride + 32;
 
 /// Places beyond this many cells, and those that are not finite, count as 0: 2^50.

@@ -96,7 +96,7 @@ struct Extent
  * Such a sample sees a corner at v - Σ λ PlaceStep, along u = U + Σ λ UStep, with the bend + Σ λ BendStep,
  * each up to its rest. Its s is therefore s + Σ λ sStep up to AlongRest, with sStep = v UStep - AlongStep,
  * and across U, which only takes away, its t is t - Σ λ (PlaceStep + s UStep + s²/2 BendStep + s sStep
- * Bend) up to Rest[0] + Rest[1] |s| + Rest[2] s².
+ * Bend) up to GetRest(s, Σ |sStep|).
  */
 template <int N, int K>
 struct Group
@@ -118,8 +118,13 @@ struct Group
   V Turn;
   V Change;
   V MostTurn;
+  V MostStep;
   V AlongRest;
-  V Rest[3];
+  V TurnRest;
+  V ChangeRest;
+  V HalfKappa;
+  V Linear;
+  V HalfBendRest;
 
   WALK_INLINE Group() {}
 
@@ -156,13 +161,23 @@ struct Group
       hn::MulAdd(this->Places, this->Turn,
         hn::Mul(this->DirectionRest,
           hn::Add(this->Places, hn::Add(mostAcross, Const(mostAlong))))));
-    const V both = hn::Add(mostStep, rest);
-    this->AlongRest = hn::Add(rest, Const(extent.Travel));
-    this->Rest[0] =
-      hn::MulAdd(both, hn::MulAdd(hn::Mul(half, kappa), both, turn), this->PlaceRest);
-    this->Rest[1] =
-      hn::MulAdd(kappa, rest, hn::MulAdd(mostStep, change, this->DirectionRest));
-    this->Rest[2] = hn::Mul(half, this->BendRest);
+    this->AlongRest = rest;
+    this->TurnRest = turn;
+    this->ChangeRest = change;
+    this->HalfKappa = hn::Mul(half, kappa);
+    this->Linear = hn::MulAdd(kappa, rest, this->DirectionRest);
+    this->HalfBendRest = hn::Mul(half, this->BendRest);
+    this->MostStep = mostStep;
+  }
+
+  /// What t can be off; `steps`: Σ |sStep|, or MostStep, which is its largest value.
+  WALK_INLINE V GetRest(V distance, V steps) const
+  {
+    const V both = hn::Add(steps, this->AlongRest);
+    const V constant =
+      hn::MulAdd(both, hn::MulAdd(this->HalfKappa, both, this->TurnRest), this->PlaceRest);
+    const V linear = hn::MulAdd(steps, this->ChangeRest, this->Linear);
+    return hn::MulAdd(hn::MulAdd(this->HalfBendRest, distance, linear), distance, constant);
   }
 
 private:
@@ -237,9 +252,10 @@ private:
     const V half = Const(0.5f);
     this->RowSpread = row;
     V along = group.MostTurn;
-    this->Across[0] = group.Rest[0];
-    this->Across[1] = hn::MulAdd(group.BendLength, group.MostTurn, group.Rest[1]);
-    this->Across[2] = hn::MulAdd(half, group.Change, group.Rest[2]);
+    this->Across[0] = group.GetRest(hn::Zero(DF()), group.MostStep);
+    this->Across[1] = hn::MulAdd(group.BendLength, group.MostTurn,
+      hn::MulAdd(group.MostStep, group.ChangeRest, group.Linear));
+    this->Across[2] = hn::MulAdd(half, group.Change, group.HalfBendRest);
     for (int k = 0; k < K; ++k)
     {
       V place[N];
@@ -256,21 +272,20 @@ private:
       this->Across[0] = hn::Add(this->Across[0], hn::Sqrt(Dot(place, place)));
       this->Across[1] = hn::Add(this->Across[1], hn::Sqrt(Dot(turn, turn)));
     }
-    this->AlongReach = hn::Add(along, group.AlongRest);
+    this->AlongReach = hn::Add(hn::Add(along, group.AlongRest), Const(extent.Travel));
     this->Length = hn::Add(Const(extent.HalfLength), this->AlongReach);
     this->LargestWidth = hn::Add(this->HalfWidth, Quadratic(this->Across, this->Length));
   }
 };
 
 /**
- * The registers of a tile, a group each: their numbers as of Group, in arrays over registers. Across the
- * flow there is one axis in 2D, the normal (-u_y, u_x), and space in 3D.
+ * The registers of a tile, in arrays over registers: each changes almost linearly from its first sample to
+ * its last, from Place - PlaceStep to Place + PlaceStep, and so on, up to the rests.
  */
 template <int N>
 struct Lines
 {
   static constexpr std::size_t Room = TileRegisters > Lanes ? TileRegisters : Lanes;
-  static constexpr int AxesAcross = N == 2 ? 1 : N;
   /// The first sample's; places are counted from there.
   HWY_ALIGN std::uint32_t Cell[N][Room];
   HWY_ALIGN float Place[N][Room];
@@ -279,56 +294,100 @@ struct Lines
   HWY_ALIGN float UStep[N][Room];
   HWY_ALIGN float Bend[N][Room];
   HWY_ALIGN float BendStep[N][Room];
-  /// At first the squares.
   HWY_ALIGN float PlaceRest[Room];
   HWY_ALIGN float DirectionRest[Room];
   HWY_ALIGN float BendRest[Room];
-  HWY_ALIGN float AlongStep[Room];
-  HWY_ALIGN float AlongRest[Room];
-  HWY_ALIGN float Rest[3][Room];
-  HWY_ALIGN float TurnAcross[AxesAcross][Room];
-  HWY_ALIGN float StepAcross[AxesAcross][Room];
-  HWY_ALIGN float BendAcross[AxesAcross][Room];
-  HWY_ALIGN float ChangeAcross[AxesAcross][Room];
 };
 
-/// What decides whether a corner reaches samples on a line: as in Group, the same in all lanes.
+/// Axes across the flow: in 2D the normal (-u_y, u_x), in 3D those of space.
 template <int N>
-struct Line
-{
-  static constexpr int AxesAcross = Lines<N>::AxesAcross;
-  V Place[N];
-  V U[N];
-  V StepAcross[AxesAcross];
-  V TurnAcross[AxesAcross];
-  V BendAcross[AxesAcross];
-  V ChangeAcross[AxesAcross];
-  V AlongStep;
-  V AlongRest;
-  V Rest[3];
+constexpr int AxesAcross = N == 2 ? 1 : N;
 
-  WALK_INLINE Line() {}
-  /// A register of samples; `cell` is where places count from.
-  WALK_INLINE Line(const Lines<N>& lines, std::size_t r, const VU (&cell)[N])
-    : AlongStep(Const(lines.AlongStep[r]))
-    , AlongRest(Const(lines.AlongRest[r]))
+/// A vector across u on these axes.
+template <int N>
+WALK_INLINE void ToAcross(const V (&v)[N], const V (&u)[N], V (&across)[AxesAcross<N>])
+{
+  if constexpr (N == 2)
   {
+    across[0] = hn::MulSub(u[0], v[1], hn::Mul(u[1], v[0]));
+  }
+  else
+  {
+    const V along = Dot(v, u);
     for (int axis = 0; axis < N; ++axis)
     {
-      const auto cells = static_cast<std::int32_t>(lines.Cell[axis][r] - hn::GetLane(cell[axis]));
-      this->Place[axis] = Const(lines.Place[axis][r] + static_cast<float>(cells));
-      this->U[axis] = Const(lines.U[axis][r]);
+      across[axis] = hn::NegMulAdd(along, u[axis], v[axis]);
     }
-    for (int axis = 0; axis < AxesAcross; ++axis)
+  }
+}
+
+/**
+ * Registers that share a list, as a group that changes with λ within each of them and with μ from one to
+ * the next; what a corner needs of it to find out which of them it reaches.
+ */
+template <int N>
+struct Span
+{
+  std::size_t Begin;
+  std::size_t End;
+  /// Across the flow.
+  V Bend[AxesAcross<N>];
+  V PlaceStep[2][AxesAcross<N>];
+  V UStep[2][AxesAcross<N>];
+  V BendStep[2][AxesAcross<N>];
+  const Group<N, 2>& Whole;
+
+  WALK_INLINE Span(std::size_t begin, std::size_t end, const Group<N, 2>& group)
+    : Begin(begin)
+    , End(end)
+    , Whole(group)
+  {
+    ToAcross<N>(group.Bend, group.U, this->Bend);
+    for (int k = 0; k < 2; ++k)
     {
-      this->StepAcross[axis] = Const(lines.StepAcross[axis][r]);
-      this->TurnAcross[axis] = Const(lines.TurnAcross[axis][r]);
-      this->BendAcross[axis] = Const(lines.BendAcross[axis][r]);
-      this->ChangeAcross[axis] = Const(lines.ChangeAcross[axis][r]);
+      ToAcross<N>(group.PlaceStep[k], group.U, this->PlaceStep[k]);
+      ToAcross<N>(group.UStep[k], group.U, this->UStep[k]);
+      ToAcross<N>(group.BendStep[k], group.U, this->BendStep[k]);
     }
-    for (int i = 0; i < 3; ++i)
+  }
+
+  /// μ of a register.
+  float GetMu(std::size_t r) const
+  {
+    return this->End - this->Begin < 2
+      ? 0.0f
+      : 2.0f * static_cast<float>(r - this->Begin) / static_cast<float>(this->End - this->Begin - 1) -
+        1.0f;
+  }
+};
+
+/// How a span sees corners: across the flow they are at T - λ Step[0] - μ Step[1], in reach if within Width.
+template <int N>
+struct View
+{
+  V T[AxesAcross<N>];
+  V Step[2][AxesAcross<N>];
+  V Width;
+
+  WALK_INLINE View() {}
+
+  /// Whether there is a λ in [-1, 1] at which T is within `width` of 0.
+  static WALK_INLINE hn::Mask<DF> IsNear(
+    const V (&t)[AxesAcross<N>], const V (&step)[AxesAcross<N>], V width)
+  {
+    if constexpr (N == 2)
     {
-      this->Rest[i] = Const(lines.Rest[i][r]);
+      return hn::Le(hn::Sub(hn::Abs(t[0]), hn::Abs(step[0])), width);
+    }
+    else
+    {
+      const V one = Const(1.0f);
+      const V tStep = Dot(t, step);
+      const V step2 = hn::Add(Dot(step, step), Const(1e-20f));
+      const V best = hn::Max(hn::Min(hn::Div(tStep, step2), one), hn::Neg(one));
+      const V least = hn::MulAdd(hn::MulSub(best, step2, hn::Add(tStep, tStep)), best, Dot(t, t));
+      return hn::And(hn::Le(least, hn::MulAdd(width, width, Const(1e-5f))),
+        hn::Ge(width, hn::Zero(DF())));
     }
   }
 };
@@ -348,15 +407,14 @@ struct Sample
   V Second;
   V Sense;
   V RootAlong;
-  /// 2D, in units of the half axes: √k u and √b n, the latter also in two parts, see Walk::AddSurflet;
-  /// what the fraction has of them; and √b κ / 2k.
-  V ScaledU[2];
-  V ScaledN[2];
-  V HighN[2];
-  V LowN[2];
+  /// 2D: the normal n = (-u_y, u_x), also in two parts, see Walk::AddSurflet; what the fraction has of u
+  /// and n; and κ/2.
+  V Normal[2];
+  V HighNormal[2];
+  V LowNormal[2];
   V AlongFraction;
   V AcrossFraction;
-  V ScaledSag;
+  V HalfBend;
 
   WALK_INLINE Sample(
     const NoiseSetup& setup, const MetricBlock& block, std::size_t i, const VU (&cell)[N])
@@ -385,31 +443,19 @@ struct Sample
     }
     if constexpr (N == 2)
     {
-      const V rootAcross = hn::Sqrt(this->Across);
-      V low[2]; // √b u: n is (-u_y, u_x)
-      V high[2];
-      V all[2];
+      this->Normal[0] = hn::Neg(this->U[1]);
+      this->Normal[1] = this->U[0];
+      this->LowNormal[0] = hn::Neg(Load(block.ULow[1] + i));
+      this->LowNormal[1] = Load(block.ULow[0] + i);
       for (int axis = 0; axis < 2; ++axis)
       {
-        this->ScaledU[axis] = hn::Mul(this->RootAlong, this->U[axis]);
-        all[axis] = hn::Mul(rootAcross, this->U[axis]);
-        high[axis] = HighPart(all[axis]);
-        low[axis] = hn::MulAdd(rootAcross, Load(block.ULow[axis] + i),
-          hn::MulSub(rootAcross, HighPart(this->U[axis]), high[axis]));
+        this->HighNormal[axis] = HighPart(this->Normal[axis]);
       }
-      this->ScaledN[0] = hn::Neg(all[1]);
-      this->ScaledN[1] = all[0];
-      this->HighN[0] = hn::Neg(high[1]);
-      this->HighN[1] = high[0];
-      this->LowN[0] = hn::Neg(low[1]);
-      this->LowN[1] = low[0];
-      this->AlongFraction = Dot(this->ScaledU, this->Fraction);
-      const V product = hn::Mul(this->ScaledN[0], this->Fraction[0]);
-      this->AcrossFraction = hn::Add(hn::MulAdd(this->ScaledN[1], this->Fraction[1], product),
-        hn::MulSub(this->ScaledN[0], this->Fraction[0], product));
-      const V across = hn::MulSub(this->U[0], this->Bend[1], hn::Mul(this->U[1], this->Bend[0]));
-      this->ScaledSag =
-        hn::Div(hn::Mul(rootAcross, across), hn::Add(this->Along, this->Along));
+      this->AlongFraction = Dot(this->U, this->Fraction);
+      const V product = hn::Mul(this->Normal[0], this->Fraction[0]);
+      this->AcrossFraction = hn::Add(hn::MulAdd(this->Normal[1], this->Fraction[1], product),
+        hn::MulSub(this->Normal[0], this->Fraction[0], product));
+      this->HalfBend = hn::Mul(Const(0.5f), Dot(this->Normal, this->Bend));
     }
   }
 };
@@ -463,10 +509,13 @@ private:
     const float* rest = this->GroupLines.PlaceRest;
     if (*std::max_element(rest + begin, rest + end) < LargestSpread) // else it cannot be
     {
-      const Reach<N> reach = this->GetReach(begin, end);
+      const Group<N, 2> group = this->GetGroup(begin, end);
+      const V row =
+        this->IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
+      const Reach<N> reach(group, this->Surflet, row);
       if (hn::GetLane(reach.LargestWidth) - this->Surflet.HalfWidth < LargestSpread)
       {
-        this->AddTogether(begin, end, reach);
+        this->AddTogether(Span<N>(begin, end, group), reach);
         return;
       }
     }
@@ -518,7 +567,7 @@ private:
     return hn::MulAdd(rest, rest, rest2);
   }
 
-  /// The lines of the tile's registers, and the largest surflet of their samples.
+  /// The tile's registers as lines, and the largest surflet of their samples.
   HWY_NOINLINE void SetLines(std::size_t registers)
   {
     Lines<N>& lines = this->GroupLines;
@@ -580,6 +629,7 @@ private:
             lines.PlaceStep[axis][r]);
         }
       }
+      // At first the squares.
       lines.PlaceRest[r] = GreatestLane(place2);
       lines.DirectionRest[r] = GreatestLane(direction2);
       lines.BendRest[r] = this->Setup.Curved ? GreatestLane(bend2) : 0.0f;
@@ -588,9 +638,12 @@ private:
     this->Surflet.HalfWidth = this->GetWidthSupport() / std::sqrt(LeastLane(across)) + Slack;
     this->Surflet.Travel = this->GetTravel() / std::sqrt(LeastLane(along));
     this->Surflet.Tapers = !this->IsStreaks();
-    for (std::size_t r = 0; r < registers; r += Lanes)
+    for (float* rest : { lines.PlaceRest, lines.DirectionRest, lines.BendRest })
     {
-      this->SetBounds(r);
+      for (std::size_t r = 0; r < registers; r += Lanes)
+      {
+        hn::Store(hn::Sqrt(hn::Load(DF(), rest + r)), DF(), rest + r);
+      }
     }
   }
 
@@ -623,65 +676,8 @@ private:
     return hn::Abs(along);
   }
 
-  /// A vector across u on the axes of Lines.
-  static WALK_INLINE void ToAcross(
-    const V (&v)[N], const V (&u)[N], V (&across)[Lines<N>::AxesAcross])
-  {
-    if constexpr (N == 2)
-    {
-      across[0] = hn::MulSub(u[0], v[1], hn::Mul(u[1], v[0]));
-    }
-    else
-    {
-      std::copy(v, v + N, across);
-    }
-  }
-
-  static WALK_INLINE void StoreAcross(const V (&v)[N], const V (&u)[N],
-    float (&arrays)[Lines<N>::AxesAcross][Lines<N>::Room], std::size_t i)
-  {
-    V across[Lines<N>::AxesAcross];
-    ToAcross(v, u, across);
-    StoreAll(across, arrays, i);
-  }
-
-  /// Completes a register of lines.
-  WALK_INLINE void SetBounds(std::size_t i)
-  {
-    Lines<N>& lines = this->GroupLines;
-    Group<N, 1> group;
-    LoadAll(lines.U, i, group.U);
-    LoadAll(lines.Bend, i, group.Bend);
-    LoadAll(lines.PlaceStep, i, group.PlaceStep[0]);
-    LoadAll(lines.UStep, i, group.UStep[0]);
-    LoadAll(lines.BendStep, i, group.BendStep[0]);
-    group.PlaceRest = hn::Sqrt(hn::Load(DF(), lines.PlaceRest + i));
-    this->ToDistances(group.PlaceStep[0], group.PlaceRest);
-    group.DirectionRest = hn::Sqrt(hn::Load(DF(), lines.DirectionRest + i));
-    group.BendRest = hn::Sqrt(hn::Load(DF(), lines.BendRest + i));
-    this->SetAcrossFlow(group);
-    group.SetBounds(this->Surflet);
-
-    StoreAll(group.U, lines.U, i);
-    StoreAll(group.Bend, lines.Bend, i);
-    StoreAll(group.UStep[0], lines.UStep, i);
-    StoreAll(group.BendStep[0], lines.BendStep, i);
-    StoreAll(group.Rest, lines.Rest, i);
-    hn::Store(group.PlaceRest, DF(), lines.PlaceRest + i);
-    hn::Store(group.DirectionRest, DF(), lines.DirectionRest + i);
-    hn::Store(group.BendRest, DF(), lines.BendRest + i);
-    hn::Store(group.AlongStep[0], DF(), lines.AlongStep + i);
-    hn::Store(group.AlongRest, DF(), lines.AlongRest + i);
-    StoreAcross(group.UStep[0], group.U, lines.TurnAcross, i);
-    StoreAcross(group.Bend, group.U, lines.BendAcross, i);
-    StoreAcross(group.BendStep[0], group.U, lines.ChangeAcross, i);
-    TakeAlong(group.PlaceStep[0], group.U);
-    StoreAcross(group.PlaceStep[0], group.U, lines.StepAcross, i);
-  }
-
   /// The middle of unit vectors is shorter than 1, and bends and changes are not quite across it.
-  template <int K>
-  static WALK_INLINE void SetAcrossFlow(Group<N, K>& group)
+  static WALK_INLINE void SetAcrossFlow(Group<N, 2>& group)
   {
     const V norm = hn::Sqrt(Dot(group.U, group.U));
     const V inverse = Inverse(norm);
@@ -691,23 +687,19 @@ private:
     }
     group.DirectionRest = hn::Add(group.DirectionRest, hn::Abs(hn::Sub(Const(1.0f), norm)));
     group.BendRest = hn::Add(group.BendRest, TakeAlong(group.Bend, group.U));
-    for (int k = 0; k < K; ++k)
+    for (int k = 0; k < 2; ++k)
     {
       group.DirectionRest = hn::Add(group.DirectionRest, TakeAlong(group.UStep[k], group.U));
       group.BendRest = hn::Add(group.BendRest, TakeAlong(group.BendStep[k], group.U));
     }
   }
 
-  /// Places and their rest from indices of the lattice to distances; its steps have length 1 at most.
-  WALK_INLINE void ToDistances(V (&place)[N], V& rest) const
+  /// From indices of the lattice to distances; its steps have length 1 at most.
+  WALK_INLINE void ToDistances(V (&place)[N]) const
   {
-    if (this->IsOblique())
-    {
-      V index[N];
-      std::copy(place, place + N, index);
-      this->ToPlace(index, place);
-      rest = hn::Add(rest, rest);
-    }
+    V index[N];
+    std::copy(place, place + N, index);
+    this->ToPlace(index, place);
   }
 
   /**
@@ -759,8 +751,8 @@ private:
     return hn::MaxOfLanes(DF(), most);
   }
 
-  /// What the registers [begin, end) reach together.
-  WALK_INLINE Reach<N> GetReach(std::size_t begin, std::size_t end)
+  /// The registers [begin, end) as a group. Offsets count from its first cell from now on.
+  WALK_INLINE Group<N, 2> GetGroup(std::size_t begin, std::size_t end)
   {
     const Lines<N>& lines = this->GroupLines;
     Group<N, 2> group;
@@ -780,16 +772,29 @@ private:
     group.DirectionRest = this->SplitSpan(
       begin, end, [&](int axis, std::size_t r) HWY_ATTR { return lines.U[axis][r]; }, lines.UStep,
       lines.DirectionRest, group.U, group.UStep);
-    group.BendRest = this->SplitSpan(
-      begin, end, [&](int axis, std::size_t r) HWY_ATTR { return lines.Bend[axis][r]; },
-      lines.BendStep, lines.BendRest, group.Bend, group.BendStep);
-    const V row = this->IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
-    this->ToDistances(group.PlaceStep[0], group.PlaceRest);
-    V none;
-    this->ToDistances(group.PlaceStep[1], none);
-    this->SetAcrossFlow(group);
+    if (this->Setup.Curved)
+    {
+      group.BendRest = this->SplitSpan(
+        begin, end, [&](int axis, std::size_t r) HWY_ATTR { return lines.Bend[axis][r]; },
+        lines.BendStep, lines.BendRest, group.Bend, group.BendStep);
+    }
+    else
+    {
+      group.BendRest = hn::Zero(DF());
+      for (int axis = 0; axis < N; ++axis)
+      {
+        group.Bend[axis] = group.BendStep[0][axis] = group.BendStep[1][axis] = hn::Zero(DF());
+      }
+    }
+    this->ToDistances(group.PlaceStep[0]);
+    this->ToDistances(group.PlaceStep[1]);
+    if (this->IsOblique())
+    {
+      group.PlaceRest = hn::Add(group.PlaceRest, group.PlaceRest);
+    }
+    SetAcrossFlow(group);
     group.SetBounds(this->Surflet);
-    return Reach<N>(group, this->Surflet, row);
+    return group;
   }
 
   /// The samples of a register, each with its own cell, place and reach.
@@ -957,8 +962,7 @@ private:
     last = hn::IfThenElse(hn::Gt(low, high), Const(-1e9f), hn::Floor(last));
   }
 
-  /// Registers [begin, end), whose reach this is.
-  HWY_NOINLINE void AddTogether(std::size_t begin, std::size_t end, const Reach<N>& reach)
+  HWY_NOINLINE void AddTogether(const Span<N>& span, const Reach<N>& reach)
   {
     HWY_ALIGN std::int32_t rowY[ListSize];
     HWY_ALIGN std::int32_t rowZ[ListSize];
@@ -976,7 +980,7 @@ private:
       {
         if (rows + Lanes > ListSize)
         {
-          this->AddRows(begin, end, reach, rowY, rowZ, rows, list);
+          this->AddRows(span, reach, rowY, rowZ, rows, list);
           rows = 0;
         }
         hn::StoreU(RampInt(y), DI(), rowY + rows);
@@ -1011,14 +1015,14 @@ private:
         }
       }
     }
-    this->AddRows(begin, end, reach, rowY, rowZ, rows, list);
-    this->Sift(reach, list);
-    this->AddCorners(begin, end, list);
+    this->AddRows(span, reach, rowY, rowZ, rows, list);
+    this->Sift(span, reach, list);
+    this->AddCorners(span, list);
   }
 
   /// Puts the corners of these rows on the list.
-  HWY_NOINLINE void AddRows(std::size_t begin, std::size_t end, const Reach<N>& reach,
-    std::int32_t* rowY, std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
+  HWY_NOINLINE void AddRows(const Span<N>& span, const Reach<N>& reach, std::int32_t* rowY,
+    std::int32_t* rowZ, std::size_t rows, CornerList<N>& list)
   {
     HWY_ALIGN std::int32_t firsts[Lanes];
     HWY_ALIGN std::int32_t lasts[Lanes];
@@ -1045,10 +1049,10 @@ private:
         {
           if (list.Count + Lanes > ListSize)
           {
-            this->Sift(reach, list);
+            this->Sift(span, reach, list);
             if (2 * list.Count > ListSize)
             {
-              this->AddCorners(begin, end, list);
+              this->AddCorners(span, list);
               list.Count = list.Sifted = 0;
             }
           }
@@ -1232,6 +1236,10 @@ private:
         }
         Corner<N> described = this->Describe(offset, this->HashCorners(corner));
         described.RowWindow = this->GetRowWindow(sample, offset);
+        for (int axis = 1; axis < N; ++axis)
+        {
+          described.FromRow[axis] = GetDistance(sample, offset[axis], axis);
+        }
         this->WithKind(
           [&](auto curved, auto normalize) HWY_ATTR {
             this->template AddSurflet<curved(), normalize()>(sample, described, this->Total[r]);
@@ -1328,8 +1336,8 @@ private:
     }
   }
 
-  /// Adds those corners of the list that reach the samples of registers [begin, end) to their sums.
-  HWY_NOINLINE void AddCorners(std::size_t begin, std::size_t end, CornerList<N>& list)
+  /// Adds those corners of the list that reach the samples of a span to their sums.
+  HWY_NOINLINE void AddCorners(const Span<N>& span, CornerList<N>& list)
   {
     // What stands behind the end of the list must at least be an index.
     for (int axis = 0; axis < N; ++axis)
@@ -1350,15 +1358,11 @@ private:
       }
       this->Put(this->Describe(offset, this->HashCorners(corner)), list, i);
     }
-    const std::uint64_t listed =
-      list.Count == ListSize ? ~0ull : (std::uint64_t{ 1 } << list.Count) - 1;
-    for (std::size_t r = begin; r < end; ++r)
+    std::uint64_t reaching[TileRegisters];
+    this->SetReaching(span, list, reaching);
+    for (std::size_t r = span.Begin; r < span.End; ++r)
     {
-      std::uint64_t bits = listed;
-      if (this->Params.AnisotropicWeight)
-      {
-        bits &= this->GetReaching(r, list);
-      }
+      const std::uint64_t bits = reaching[r];
       this->Visited += this->Count[r] * hwy::PopCount(bits);
       const Sample<N> sample(this->Setup, this->Block, this->First[r], this->Cell);
       this->SetFromRow(sample, list);
@@ -1404,15 +1408,16 @@ private:
     return bits;
   }
 
-  /// Which of the corners at these indices, displaced by `jitter`, reach samples on a line.
-  WALK_INLINE hn::Mask<DF> IsReached(
-    const Line<N>& line, const V (&corner)[N], const V (&jitter)[N]) const
+  /// How a span sees corners at these indices, displaced by `jitter` and, at most, by as much as `loose`.
+  WALK_INLINE View<N> GetView(
+    const Span<N>& span, const V (&corner)[N], const V (&jitter)[N], float loose) const
   {
-    constexpr int AxesAcross = Line<N>::AxesAcross;
+    const Group<N, 2>& group = span.Whole;
+    View<N> view;
     V v[N];
     for (int axis = 0; axis < N; ++axis)
     {
-      v[axis] = hn::Sub(corner[axis], line.Place[axis]);
+      v[axis] = hn::Sub(corner[axis], group.Place[axis]);
     }
     if constexpr (Variant)
     {
@@ -1424,118 +1429,86 @@ private:
         v[axis] = hn::Add(v[axis], jitter[axis]);
       }
     }
-    // At the middle of the line: s, t and their changes with λ.
-    const V s = Dot(v, line.U);
-    V t[AxesAcross];
-    V sStep;
+    const V s = Dot(v, group.U);
     if constexpr (N == 2)
     {
-      t[0] = hn::MulSub(line.U[0], v[1], hn::Mul(line.U[1], v[0]));
-      sStep = hn::MulSub(t[0], line.TurnAcross[0], line.AlongStep);
+      ToAcross<N>(v, group.U, view.T);
     }
     else
     {
-      sStep = hn::Neg(line.AlongStep);
       for (int axis = 0; axis < N; ++axis)
       {
-        t[axis] = hn::NegMulAdd(s, line.U[axis], v[axis]);
-        sStep = hn::MulAdd(v[axis], line.TurnAcross[axis], sStep);
+        view.T[axis] = hn::NegMulAdd(s, group.U[axis], v[axis]);
       }
     }
-    V step[AxesAcross];
-    for (int axis = 0; axis < AxesAcross; ++axis)
+    const V sag = hn::Mul(hn::Mul(s, s), Const(0.5f));
+    V steps = hn::Zero(DF());
+    for (int k = 0; k < 2; ++k)
     {
-      step[axis] =
-        hn::MulAdd(s, line.TurnAcross[axis], line.StepAcross[axis]);
-    }
-    if (this->Setup.Curved)
-    {
-      const V sag = hn::Mul(hn::Mul(s, s), Const(0.5f));
-      const V sagStep = hn::Mul(s, sStep);
-      for (int axis = 0; axis < AxesAcross; ++axis)
+      // v UStep is that of the part across.
+      const V sStep = hn::Sub(Dot(view.T, span.UStep[k]), group.AlongStep[k]);
+      steps = hn::Add(steps, hn::Abs(sStep));
+      for (int axis = 0; axis < AxesAcross<N>; ++axis)
       {
-        const V bend = line.BendAcross[axis];
-        t[axis] = hn::NegMulAdd(sag, bend, t[axis]);
-        step[axis] = hn::MulAdd(sag, line.ChangeAcross[axis], step[axis]);
-        step[axis] = hn::MulAdd(sagStep, bend, step[axis]);
+        view.Step[k][axis] = hn::MulAdd(s, span.UStep[k][axis], span.PlaceStep[k][axis]);
+        if (this->Setup.Curved)
+        {
+          view.Step[k][axis] = hn::MulAdd(sag, span.BendStep[k][axis], view.Step[k][axis]);
+          view.Step[k][axis] =
+            hn::MulAdd(hn::Mul(s, sStep), span.Bend[axis], view.Step[k][axis]);
+        }
       }
     }
-    const V shortest = hn::Sub(hn::Sub(hn::Abs(s), hn::Abs(sStep)), line.AlongRest);
-    const V width = hn::Add(Quadratic(line.Rest, hn::Abs(s)),
-      GetTaper(shortest, Const(1.0f / this->Surflet.HalfLength),
-        Const(this->Surflet.HalfWidth), this->Surflet.Tapers));
-    // |t - λ step| at the λ where it is least.
-    if constexpr (N == 2)
+    for (int axis = 0; axis < AxesAcross<N> && this->Setup.Curved; ++axis)
     {
-      return hn::Le(hn::Sub(hn::Abs(t[0]), hn::Abs(step[0])), width);
+      view.T[axis] = hn::NegMulAdd(sag, span.Bend[axis], view.T[axis]);
     }
-    else
-    {
-      const V one = Const(1.0f);
-      const V tStep = Dot(t, step);
-      const V step2 = hn::Add(Dot(step, step), Const(1e-20f));
-      const V best = hn::Max(hn::Min(hn::Div(tStep, step2), one), hn::Neg(one));
-      const V least = hn::MulAdd(hn::MulSub(best, step2, hn::Add(tStep, tStep)), best, Dot(t, t));
-      return hn::And(hn::Le(least, hn::MulAdd(width, width, Const(1e-5f))),
-        hn::Ge(width, hn::Zero(DF())));
-    }
+    const V distance = hn::Abs(s);
+    const V shortest = hn::Sub(
+      distance, hn::Add(hn::Add(steps, group.AlongRest), Const(this->Surflet.Travel + loose)));
+    view.Width = hn::Add(group.GetRest(hn::Add(distance, Const(loose)), steps),
+      GetTaper(shortest, Const(1.0f / this->Surflet.HalfLength), Const(this->Surflet.HalfWidth),
+        this->Surflet.Tapers));
+    return view;
   }
 
-  /// Bits of the corners on the list that reach samples of a register.
-  WALK_INLINE std::uint64_t GetReaching(std::size_t r, const CornerList<N>& list) const
+  /// For each register of the span bits of the corners on the list that reach its samples.
+  WALK_INLINE void SetReaching(
+    const Span<N>& span, const CornerList<N>& list, std::uint64_t (&reaching)[TileRegisters]) const
   {
-    const Line<N> line(this->GroupLines, r, this->Cell);
-    std::uint64_t bits = 0;
+    const bool all = !this->Params.AnisotropicWeight;
+    std::fill_n(reaching, TileRegisters, 0);
     for (std::size_t i = 0; i < list.Count; i += Lanes)
     {
+      const auto listed = hn::FirstN(DF(), list.Count - i);
       V offset[N];
       V jitter[N];
       LoadAll(list.Offset, i, offset);
       LoadAll(list.Jitter, i, jitter);
-      bits |= ToBits(this->IsReached(line, offset, jitter)) << i;
+      const View<N> view = this->GetView(span, offset, jitter, 0.0f);
+      for (std::size_t r = span.Begin; r < span.End; ++r)
+      {
+        const V mu = Const(span.GetMu(r));
+        V t[AxesAcross<N>];
+        for (int axis = 0; axis < AxesAcross<N>; ++axis)
+        {
+          t[axis] = hn::NegMulAdd(mu, view.Step[1][axis], view.T[axis]);
+        }
+        const auto near = View<N>::IsNear(t, view.Step[0], view.Width);
+        reaching[r] |= ToBits(all ? listed : hn::And(listed, near)) << i;
+      }
     }
-    return bits;
   }
 
-  /// The reach of several registers as a line, which is what rows are continued by.
-  WALK_INLINE Line<N> GetLine(const Reach<N>& reach) const
-  {
-    const V half = Const(0.5f);
-    const V zero = hn::Zero(DF());
-    Line<N> line;
-    V step[N];
-    line.AlongStep = hn::Mul(reach.RowSpread, reach.U[0]);
-    for (int axis = 0; axis < N; ++axis)
-    {
-      line.Place[axis] = reach.Place[axis];
-      line.U[axis] = reach.U[axis];
-      step[axis] =
-        hn::NegMulAdd(line.AlongStep, reach.U[axis], axis == 0 ? reach.RowSpread : zero);
-    }
-    ToAcross(step, reach.U, line.StepAcross);
-    ToAcross(reach.Bend, reach.U, line.BendAcross);
-    std::fill_n(line.TurnAcross, Line<N>::AxesAcross, zero);
-    std::fill_n(line.ChangeAcross, Line<N>::AxesAcross, zero);
-    // Jitter, which is not known yet, counts as a rest; and so does the change of the sag.
-    const V radius = Const(this->Setup.JitterRadius);
-    const V more = hn::Add(radius, hn::Abs(line.AlongStep));
-    line.AlongRest = hn::Add(reach.AlongReach, radius);
-    line.Rest[0] = hn::Add(Quadratic(reach.Across, more), this->GetLooseness(reach));
-    line.Rest[0] = hn::MulAdd(hn::Mul(half, reach.BendLength),
-      hn::Mul(line.AlongStep, line.AlongStep), line.Rest[0]);
-    line.Rest[1] = hn::MulAdd(hn::Add(more, more), reach.Across[2], reach.Across[1]);
-    line.Rest[2] = reach.Across[2];
-    return line;
-  }
-
-  /// Takes corners off the list that reach none of the registers, from where that was done before on.
-  HWY_NOINLINE void Sift(const Reach<N>& reach, CornerList<N>& list) const
+  /// Takes corners off the list that reach no sample of the span, from where that was done before on.
+  HWY_NOINLINE void Sift(const Span<N>& span, const Reach<N>& reach, CornerList<N>& list) const
   {
     if (!this->Params.AnisotropicWeight)
     {
       return;
     }
-    const Line<N> line = this->GetLine(reach);
+    // Jitter is not known yet.
+    const V looseness = this->GetLooseness(reach);
     V middle[N];
     std::fill_n(middle, N, Const(this->Setup.JitterMiddle));
     std::size_t kept = list.Sifted;
@@ -1546,8 +1519,12 @@ private:
       {
         offset[axis] = hn::ConvertTo(DF(), hn::LoadU(DI(), list.Index[axis] + i));
       }
+      const View<N> view = this->GetView(span, offset, middle, this->Setup.JitterRadius);
+      const V width =
+        hn::Add(hn::Add(view.Width, looseness), hn::Sqrt(Dot(view.Step[1], view.Step[1])));
       const auto listed = hn::FirstN(DF(), list.Count - i);
-      std::uint64_t bits = ToBits(hn::And(this->IsReached(line, offset, middle), listed));
+      std::uint64_t bits =
+        ToBits(hn::And(listed, View<N>::IsNear(view.T, view.Step[0], width)));
       for (; bits != 0; bits &= bits - 1, ++kept)
       {
         const std::size_t from = i + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
@@ -1655,49 +1632,52 @@ private:
         v[axis] = hn::Add(v[axis], corner.Jitter[axis]);
       }
     }
-    // q = S² + T²; g G v' as its part along the flow and that across it; |G v'|².
-    V sigma; // S, the distance along the flow in half-lengths
+    // Along the flow and across it: q = k s² + b t², g G v', and |G v'|².
+    V s;
+    V sigma; // √k s, of variants
+    V ks;
     V across2;
     V q;
     V slope;
-    V slope2 = hn::Zero(DF());
+    V slope2;
     const V(&g)[N] = corner.Gradient;
     if constexpr (N == 2)
     {
-      V T;
+      V t;
       if constexpr (Variant)
       {
-        sigma = Dot(v, sample.ScaledU);
-        T = Dot(v, sample.ScaledN);
+        s = Dot(v, sample.U);
+        t = Dot(v, sample.Normal);
       }
       else
       {
         // n . v for a far corner is a small difference of large products. The high parts of n have
         // 16 bits, so their products with whole offsets and the difference are exact.
-        sigma = hn::MulAdd(sample.ScaledU[0], offset[0],
-          hn::MulSub(sample.ScaledU[1], offset[1], sample.AlongFraction));
-        T = hn::Add(
-          hn::MulAdd(sample.HighN[0], offset[0], hn::Mul(sample.HighN[1], offset[1])),
-          hn::MulAdd(sample.LowN[0], offset[0],
-            hn::MulSub(sample.LowN[1], offset[1], sample.AcrossFraction)));
+        s = hn::MulAdd(
+          sample.U[0], offset[0], hn::MulSub(sample.U[1], offset[1], sample.AlongFraction));
+        t = hn::Add(
+          hn::MulAdd(sample.HighNormal[0], offset[0], hn::Mul(sample.HighNormal[1], offset[1])),
+          hn::MulAdd(sample.LowNormal[0], offset[0],
+            hn::MulSub(sample.LowNormal[1], offset[1], sample.AcrossFraction)));
       }
       if constexpr (Curved)
       {
-        T = hn::NegMulAdd(hn::Mul(sigma, sigma), sample.ScaledSag, T);
+        t = hn::NegMulAdd(hn::Mul(s, s), sample.HalfBend, t);
       }
-      sigma = this->Travelled(sample, corner, sigma);
-      const V sigma2 = hn::Mul(sigma, sigma);
-      across2 = hn::Mul(T, T);
-      q = Variant || squares ? hn::Add(sigma2, across2) : hn::MulAdd(T, T, sigma2);
-      slope = hn::MulAdd(sigma, Dot(sample.ScaledU, g), hn::Mul(T, Dot(sample.ScaledN, g)));
+      this->Travel(sample, corner, s, sigma);
+      ks = hn::Mul(sample.Along, s);
+      const V bt = hn::Mul(sample.Across, t);
+      across2 = hn::Mul(bt, t);
+      q = hn::MulAdd(ks, s, across2);
+      slope = hn::MulAdd(ks, Dot(sample.U, g), hn::Mul(bt, Dot(sample.Normal, g)));
       if constexpr (squares)
       {
-        slope2 = hn::MulAdd(sample.Along, sigma2, hn::Mul(sample.Across, across2));
+        slope2 = hn::MulAdd(ks, ks, hn::Mul(bt, bt));
       }
     }
     else
     {
-      const V s = Dot(v, sample.U);
+      s = Dot(v, sample.U);
       V t[N];
       for (int i = 0; i < N; ++i)
       {
@@ -1711,10 +1691,9 @@ private:
           t[i] = hn::NegMulAdd(sag, sample.Bend[i], t[i]);
         }
       }
-      const V t2 = Dot(t, t);
-      across2 = hn::Mul(sample.Across, t2);
-      sigma = this->Travelled(sample, corner, hn::Mul(sample.RootAlong, s));
-      const V ks = hn::Mul(sample.RootAlong, sigma);
+      this->Travel(sample, corner, s, sigma);
+      ks = hn::Mul(sample.Along, s);
+      across2 = hn::Mul(sample.Across, Dot(t, t));
       // s is rounded and u has not quite length 1: what t still has of u is large beside it. It does
       // not change t² but g . t.
       const V rest = Dot(t, sample.U);
@@ -1730,9 +1709,12 @@ private:
         const V more = hn::Mul(hn::Sub(sample.Second, sample.Across), r);
         across2 = hn::MulAdd(more, r, across2);
         slope = hn::MulAdd(more, Dot(sample.M, g), slope);
-        slope2 = hn::MulAdd(hn::Mul(more, hn::Add(sample.Second, sample.Across)), r, slope2);
+        if constexpr (squares)
+        {
+          slope2 = hn::MulAdd(hn::Mul(more, hn::Add(sample.Second, sample.Across)), r, slope2);
+        }
       }
-      q = hn::MulAdd(sigma, sigma, across2);
+      q = hn::MulAdd(ks, s, across2);
     }
 
     V weight;
@@ -1773,10 +1755,18 @@ private:
     }
   }
 
-  /// Where the surflet of a corner stands on its way along the flow.
-  WALK_INLINE V Travelled(const Sample<N>& sample, const Corner<N>& corner, V sigma) const
+  /// Moves the surflet of a corner on its way along the flow, and gives s in half-lengths.
+  WALK_INLINE void Travel(const Sample<N>& sample, const Corner<N>& corner, V& s, V& sigma) const
   {
-    return Variant && this->Params.Motion ? hn::MulAdd(corner.Travel, sample.Sense, sigma) : sigma;
+    if constexpr (Variant)
+    {
+      sigma = hn::Mul(sample.RootAlong, s);
+      if (this->Params.Motion)
+      {
+        sigma = hn::MulAdd(corner.Travel, sample.Sense, sigma);
+        s = hn::Div(sigma, sample.RootAlong);
+      }
+    }
   }
 
   /// Samples that are farther apart than this, as their surflets see it, do not share a list.

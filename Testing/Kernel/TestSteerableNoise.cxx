@@ -734,6 +734,15 @@ TEST(SteerableNoise, EqualsTheReferenceOnUnusualImages)
   ExpectReferenceOfImages<2>(parameters, grid, Swirl, "2D image, coarse");
   grid.Spacing = { -0.4, -0.6, 1.0 };
   ExpectReferenceOfImages<2>(parameters, grid, Swirl, "2D image, negative spacing");
+  grid = SmallGrid(3);
+  grid.Spacing = { 1.9, 1.1, 1.3 };
+  ExpectReferenceOfImages<3>(parameters, grid, Swirl, "3D image, coarse");
+  // Several patches beside and above each other.
+  grid.Spacing = { 0.1, 0.12, 0.11 };
+  grid.Dimensions = { 150, 19, 1 };
+  ExpectReferenceOfImages<2>(parameters, grid, Swirl, "2D image, wide");
+  grid.Dimensions = { 75, 11, 3 };
+  ExpectReferenceOfImages<3>(parameters, grid, Swirl, "3D image, wide");
   // A line of samples has no neighbours across.
   grid = SmallGrid(2);
   grid.Dimensions = { 1, 20, 1 };

@@ -16,11 +16,13 @@ for d in ("2D", "3D"):
         ("Image/%s/Quality8" % d, plain, ">= 1/5" if d == "2D" else ">= 1/8"),
         ("Image/%s/Defaults" % d, plain, ">= 1/6"),
         ("Points/%s/Quality0" % d, plain, ""),
+        ("Option/%s/Isotropic" % d, plain, ""),
         ("Filter/%s/Quality0/Threads1" % d, plain, ">= 0.7 (warm)"),
         ("Filter/%s/Defaults/Threads2" % d, "Filter/%s/Defaults/Threads1" % d, ">= 1.6"),
     ]
 ROWS += [
     ("Cold/2D/HugePages", "Cold/2D/Plain", ">= 1.6"),
+    ("Filter/2D/Quality0/Cold", "Cold/2D/Plain", ">= 1.6"),
     ("Image/3D/Quality0", "Vtk/PerlinNoise", ""),
     ("Filter/2D/Defaults/Threads1", "Vtk/ImageDataLIC2D", ">= 300"),
 ]

@@ -2,17 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseSamples.h"
 
+#include "CellSums.h"
 #include "MetricTensor.h"
+#include "NoiseCurvature.h"
 
-#include "vtkAppendFilter.h"
 #include "vtkCell.h"
 #include "vtkCellCenters.h"
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
-#include "vtkGenericCell.h"
-#include "vtkGradientFilter.h"
 #include "vtkIdList.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
@@ -21,13 +20,13 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
-#include "vtkPolyData.h"
-#include "vtkPolygon.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkSMPTools.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -55,12 +54,11 @@ bool ConsistsOfSimplices(int cellType)
 }
 
 /**
- * The cells as VTK can take them: it writes out of bounds (VTK 9.2) where a strip or a convex point set
- * is degenerate, and where higher-order cells have no finite coordinates. Cells with bad coordinates or
- * without simplices become empty; where it is the points that have data (`cells` false), the simplices
- * follow in their cell's place.
+ * The cells as VTK can take them when it looks for their centres: it writes out of bounds (VTK 9.2) where a
+ * strip or a convex point set is degenerate, and where higher-order cells have no finite coordinates. Such
+ * cells become empty.
  */
-vtkSmartPointer<vtkUnstructuredGrid> MendCells(vtkUnstructuredGrid* grid, bool cells)
+vtkSmartPointer<vtkUnstructuredGrid> MendCells(vtkUnstructuredGrid* grid)
 {
   vtkPoints* points = grid->GetPoints();
   vtkUnsignedCharArray* types = grid->GetDistinctCellTypesArray();
@@ -80,29 +78,20 @@ vtkSmartPointer<vtkUnstructuredGrid> MendCells(vtkUnstructuredGrid* grid, bool c
   auto mended = vtkSmartPointer<vtkUnstructuredGrid>::New();
   mended->SetPoints(points);
   mended->Allocate(grid->GetNumberOfCells());
-  if (cells)
-  {
-    mended->GetCellData()->PassData(grid->GetCellData());
-  }
-  else
-  {
-    mended->GetPointData()->PassData(grid->GetPointData());
-  }
   vtkNew<vtkIdList> ids;
   vtkNew<vtkIdList> simplices;
   vtkNew<vtkPoints> corners;
   for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
   {
     int type = grid->GetCellType(cell);
-    const int simplex = type == VTK_TRIANGLE_STRIP ? 3 : 4;
     grid->GetCellPoints(cell, ids);
-    simplices->Reset();
     bool keep = std::all_of(
       ids->begin(), ids->end(), [&](vtkIdType point) { return IsUsable(points, point); });
     if (keep && ConsistsOfSimplices(type))
     {
+      simplices->Reset();
       grid->GetCell(cell)->Triangulate(0, simplices, corners);
-      keep = cells && simplices->GetNumberOfIds() > 0;
+      keep = simplices->GetNumberOfIds() > 0;
     }
     if (!keep)
     {
@@ -114,11 +103,6 @@ vtkSmartPointer<vtkUnstructuredGrid> MendCells(vtkUnstructuredGrid* grid, bool c
       grid->GetFaceStream(cell, ids);
     }
     mended->InsertNextCell(type, ids);
-    for (vtkIdType i = 0; !cells && i + simplex <= simplices->GetNumberOfIds(); i += simplex)
-    {
-      mended->InsertNextCell(
-        simplex == 3 ? VTK_TRIANGLE : VTK_TETRA, simplex, simplices->GetPointer(i));
-    }
   }
   return mended;
 }
@@ -137,25 +121,32 @@ void SetMeanOfPoints(vtkUnstructuredGrid* grid, vtkIdType cell, vtkDataArray* ce
   centers->SetTuple(cell, sum.data());
 }
 
-/// Whether there are cells of dimension 2.
-bool HasSurfaces(vtkDataSet* dataset)
+/// Unit normal of the plane through points (a strip's first three), 0 if there is none.
+Eigen::Vector3d GetNormal(vtkDataSet* dataset, int cellType, vtkIdList* ids)
 {
-  vtkNew<vtkGenericCell> cell;
-  int known = VTK_EMPTY_CELL;
-  for (vtkIdType id = 0; id < dataset->GetNumberOfCells(); ++id)
+  const vtkIdType count =
+    cellType == VTK_TRIANGLE_STRIP ? std::min<vtkIdType>(3, ids->GetNumberOfIds()) : ids->GetNumberOfIds();
+  // Newell's sum over the edges; a pixel's points are in the order of an image.
+  const auto getId = [&](vtkIdType i)
+  { return ids->GetId(cellType == VTK_PIXEL && i >= 2 ? 5 - i : i); };
+  Eigen::Vector3d origin;
+  Eigen::Vector3d before;
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (vtkIdType i = 0; i < count; ++i)
   {
-    const int type = dataset->GetCellType(id);
-    if (type != known)
+    Eigen::Vector3d place;
+    dataset->GetPoint(getId(i), place.data());
+    if (i == 0)
     {
-      known = type;
-      cell->SetCellType(type);
-      if (cell->GetCellDimension() == 2)
-      {
-        return true;
-      }
+      origin = before = place;
     }
+    const Eigen::Vector3d edge = place - origin;
+    normal += (before - origin).cross(edge);
+    before = place;
   }
-  return false;
+  const double length = normal.norm();
+  return length > 0.0 && std::isfinite(length) ? Eigen::Vector3d(normal / length)
+                                               : Eigen::Vector3d::Zero();
 }
 
 bool IsGhostCell(vtkUnsignedCharArray* ghosts, vtkIdType cell)
@@ -319,7 +310,7 @@ void Samples::SetPoints()
     centers->SetNumberOfComponents(3);
     centers->SetNumberOfTuples(this->DataSet->GetNumberOfCells());
     auto* grid = vtkUnstructuredGrid::SafeDownCast(this->DataSet);
-    vtkSmartPointer<vtkUnstructuredGrid> mended = grid ? MendCells(grid, true) : nullptr;
+    vtkSmartPointer<vtkUnstructuredGrid> mended = grid ? MendCells(grid) : nullptr;
     vtkCellCenters::ComputeCellCenters(grid ? mended.Get() : this->DataSet, centers);
     for (vtkIdType cell = 0; mended != grid && cell < mended->GetNumberOfCells(); ++cell)
     {
@@ -353,86 +344,87 @@ void Samples::SetPoints()
 
 vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
 {
-  if (!HasSurfaces(this->DataSet))
+  const CellDimensions dimensions(this->DataSet);
+  if (!dimensions.Has(2))
   {
     return nullptr;
   }
-  const vtkIdType cells = this->DataSet->GetNumberOfCells();
   auto normals = vtkSmartPointer<vtkFloatArray>::New();
   normals->SetNumberOfComponents(3);
   normals->SetNumberOfTuples(this->GetNumberOfSamples());
-  normals->Fill(0.0);
-
   // The dataset's own normals where it has them; their sense does not matter.
   vtkDataSetAttributes* attributes = this->Cells
     ? static_cast<vtkDataSetAttributes*>(this->DataSet->GetCellData())
     : this->DataSet->GetPointData();
   vtkDataArray* own = attributes->GetNormals();
-  std::vector<unsigned char> inVolume(this->Cells ? 0 : this->DataSet->GetNumberOfPoints(), 0);
-  vtkNew<vtkGenericCell> cell;
-  bool any = false;
-  for (vtkIdType id = 0; id < cells; ++id)
+  const auto isSurface = [&](vtkIdType cell)
+  { return dimensions.Get(this->DataSet->GetCellType(cell)) == 2; };
+
+  if (this->Cells)
   {
-    this->DataSet->GetCell(id, cell);
-    if (cell->GetCellDimension() == 3 && !this->Cells)
-    {
-      for (vtkIdType i = 0; i < cell->GetNumberOfPoints(); ++i)
+    vtkSMPTools::For(0, this->DataSet->GetNumberOfCells(), 1024,
+      [&](vtkIdType begin, vtkIdType end)
       {
-        inVolume[cell->GetPointId(static_cast<int>(i))] = 1;
-      }
-    }
-    if (cell->GetCellDimension() != 2)
+        vtkNew<vtkIdList> ids;
+        for (vtkIdType cell = begin; cell < end; ++cell)
+        {
+          Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+          if (isSurface(cell))
+          {
+            this->DataSet->GetCellPoints(cell, ids);
+            normal = GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
+          }
+          if (own && !normal.isZero(0.0))
+          {
+            own->GetTuple(cell, normal.data());
+          }
+          normals->SetTuple(cell, normal.data());
+        }
+      });
+    return normals;
+  }
+
+  PointSums sums(this->DataSet, normals, 1.0);
+  // Neighbours that face the other way count all the same: the metric has no sides.
+  sums.AddCells(true,
+    [&](vtkIdType cell, vtkIdList* ids, PointSums::Shares& shares)
     {
-      continue;
-    }
-    double normal[3];
-    vtkPoints* points = cell->GetPoints();
-    if (cell->GetCellType() == VTK_TRIANGLE_STRIP)
-    {
-      vtkNew<vtkPoints> first;
-      first->SetDataTypeToDouble();
-      for (int i = 0; i < 3; ++i)
+      if (isSurface(cell))
       {
-        first->InsertNextPoint(points->GetPoint(i));
+        this->DataSet->GetCellPoints(cell, ids);
+        const Eigen::Vector3d normal =
+          GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
+        for (vtkIdType i = 0; i < ids->GetNumberOfIds() && !normal.isZero(0.0); ++i)
+        {
+          sums.Append(shares, ids->GetId(i), normal);
+        }
       }
-      vtkPolygon::ComputeNormal(first, normal);
-    }
-    else
+    });
+  sums.Finish();
+  for (vtkIdType point = 0; own && point < normals->GetNumberOfTuples(); ++point)
+  {
+    const Eigen::Map<const Eigen::Vector3f> normal(normals->GetPointer(3 * point));
+    if (!normal.isZero(0.0f)) // on a surface
     {
-      vtkPolygon::ComputeNormal(points, normal);
-    }
-    if (vtkMath::Norm(normal) < 0.5)
-    {
-      continue; // degenerate cell
-    }
-    any = true;
-    if (this->Cells)
-    {
-      normals->SetTuple(id, own ? own->GetTuple(id) : normal);
-      continue;
-    }
-    for (vtkIdType i = 0; i < cell->GetNumberOfPoints(); ++i)
-    {
-      const vtkIdType point = cell->GetPointId(static_cast<int>(i));
-      double sum[3];
-      normals->GetTuple(point, sum);
-      // Neighbours that face the other way count all the same: the metric has no sides.
-      const double side = vtkMath::Dot(sum, normal) < 0.0 ? -1.0 : 1.0;
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        sum[axis] += side * normal[axis];
-      }
-      normals->SetTuple(point, own ? own->GetTuple(point) : sum);
+      double tuple[3];
+      own->GetTuple(point, tuple);
+      normals->SetTuple(point, tuple);
     }
   }
-  for (std::size_t point = 0; point < inVolume.size(); ++point)
+  // A point of a volume is not on a surface.
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; dimensions.Has(3) && cell < this->DataSet->GetNumberOfCells(); ++cell)
   {
-    if (inVolume[point])
+    if (dimensions.Get(this->DataSet->GetCellType(cell)) == 3)
     {
-      normals->SetTuple3(static_cast<vtkIdType>(point), 0.0, 0.0, 0.0);
+      this->DataSet->GetCellPoints(cell, ids);
+      for (const vtkIdType point : *ids)
+      {
+        normals->SetTuple3(point, 0.0, 0.0, 0.0);
+      }
     }
   }
-  return any ? normals : nullptr;
+  return normals;
 }
 
 vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
@@ -489,90 +481,28 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
   return normals;
 }
 
-void Samples::ComputeCurvature()
+void Samples::ComputeCurvature(double featureSize)
 {
   const vtkIdType count = this->GetNumberOfSamples();
   if (this->IsGrid || count == 0 || !this->Field.Vectors || this->DataSet->GetNumberOfCells() == 0)
   {
     return;
   }
-  // û of every sample, 0 where there is none.
-  vtkNew<vtkFloatArray> unit;
-  unit->SetName("SteerableNoiseDirection");
-  unit->SetNumberOfComponents(3);
-  unit->SetNumberOfTuples(count);
-  float* units = unit->GetPointer(0);
-  vtkSMPTools::For(0, count, 4096,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      std::vector<float> scratch(3 * (end - begin));
-      const float* vectors = this->Steering->Read(begin, end - begin, scratch.data());
-      for (vtkIdType i = begin; i < end; ++i)
-      {
-        Eigen::Vector3d u =
-          Eigen::Map<const Eigen::Vector3f>(vectors + 3 * (i - begin)).cast<double>();
-        const double length = u.norm();
-        u = std::isfinite(length) && length > 0.0 ? Eigen::Vector3d(u / length)
-                                                  : Eigen::Vector3d::Zero();
-        Eigen::Map<Eigen::Vector3f>(units + 3 * i) = u.cast<float>();
-      }
-    });
-
-  auto geometry = vtkSmartPointer<vtkDataSet>::Take(this->DataSet->NewInstance());
-  geometry->CopyStructure(this->DataSet);
-  if (this->Cells)
+  int dimensions[3];
+  if (GetDimensions(this->DataSet, dimensions))
   {
-    geometry->GetCellData()->AddArray(unit);
+    for (int& samples : dimensions)
+    {
+      samples = this->Cells ? std::max(samples - 1, 1) : samples;
+    }
+    this->Curvature =
+      ComputeStreamlineCurvature(dimensions, *this->Positions, *this->Field.Vectors);
   }
   else
   {
-    geometry->GetPointData()->AddArray(unit);
+    this->Curvature = ComputeStreamlineCurvature(
+      this->DataSet, *this->Field.Vectors, this->Cells, featureSize);
   }
-  if (vtkPolyData::SafeDownCast(geometry))
-  {
-    // vtkGradientFilter's threads trip over surfaces with degenerate cells, not over the same cells in
-    // an unstructured grid (VTK 9.2).
-    vtkNew<vtkAppendFilter> unstructured;
-    unstructured->SetInputData(geometry);
-    unstructured->Update();
-    geometry = unstructured->GetOutput();
-  }
-  if (auto* grid = vtkUnstructuredGrid::SafeDownCast(geometry))
-  {
-    geometry = MendCells(grid, this->Cells);
-  }
-  vtkNew<vtkGradientFilter> gradient;
-  gradient->SetInputData(geometry);
-  // Gradients of cells, averaged at the points: as good for a bend, and seven times as fast.
-  gradient->FasterApproximationOn();
-  gradient->SetInputScalars(
-    this->Cells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
-    unit->GetName());
-  gradient->SetResultArrayName("Jacobian");
-  gradient->Update();
-  vtkDataSet* output = vtkDataSet::SafeDownCast(gradient->GetOutput());
-  vtkDataArray* jacobian = this->Cells ? output->GetCellData()->GetArray("Jacobian")
-                                       : output->GetPointData()->GetArray("Jacobian");
-  if (!jacobian || jacobian->GetNumberOfComponents() != 9 || jacobian->GetNumberOfTuples() != count)
-  {
-    return;
-  }
-
-  // (û·∇)û, written over û, which nobody needs any more.
-  vtkSMPTools::For(0, count, 4096,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      double J[9];
-      for (vtkIdType i = begin; i < end; ++i)
-      {
-        jacobian->GetTuple(i, J);
-        Eigen::Map<Eigen::Vector3f> u(units + 3 * i);
-        const Eigen::Vector3d direction = u.cast<double>();
-        u = (Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(J) * direction)
-              .cast<float>();
-      }
-    });
-  this->Curvature = unit;
   this->CurvatureReader = MakeVectorReader(this->Curvature, WorldAxes, false);
   this->Field.Curvature = this->CurvatureReader.get();
 }

@@ -39,8 +39,8 @@ public:
   /// Parts that are evaluated independently: rows of a grid, or samples.
   std::size_t GetNumberOfParts() const;
 
-  /// Curvature of the streamlines, where the kernel does not find it itself. Runs vtkGradientFilter.
-  void ComputeCurvature();
+  /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.
+  void ComputeCurvature(double featureSize);
 
   /// Noise of the parts [begin, end) into an array of GetNumberOfSamples() values.
   steerable::EvaluationCounts Evaluate(const steerable::SteerableNoise& kernel, std::size_t begin,

@@ -12,13 +12,39 @@
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <string>
 
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
 namespace noise
 {
+/**
+ * Asks for large pages where memory is about to be written for the first time: the system clears and
+ * enters each page then, which for small pages can take longer than the noise itself.
+ */
+inline void AdviseLargePages(void* memory, std::size_t bytes)
+{
+#ifdef MADV_HUGEPAGE
+  constexpr std::uintptr_t page = std::uintptr_t(1) << 21;
+  const auto address = reinterpret_cast<std::uintptr_t>(memory);
+  const std::uintptr_t begin = (address + page - 1) / page * page;
+  const std::uintptr_t end = (address + bytes) / page * page;
+  if (begin < end)
+  {
+    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // a hint: it may fail
+  }
+#else
+  (void)memory;
+  (void)bytes;
+#endif
+}
+
 inline vtkSmartPointer<vtkFloatArray> NewOutputArray(
   const char* name, int components, vtkIdType tuples)
 {
@@ -26,6 +52,8 @@ inline vtkSmartPointer<vtkFloatArray> NewOutputArray(
   array->SetName(name);
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(tuples);
+  AdviseLargePages(
+    array->GetPointer(0), static_cast<std::size_t>(array->GetNumberOfValues()) * sizeof(float));
   return array;
 }
 

@@ -284,7 +284,7 @@ struct vtkSteerableNoiseFilter::Internals
     const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
     if (parameters.FollowCurvature)
     {
-      samples.ComputeCurvature();
+      noise::WithThreads([&] { samples.ComputeCurvature(parameters.FeatureSize); });
     }
     auto result =
       noise::NewOutputArray(this->Self->ResultArrayName, 1, samples.GetNumberOfSamples());

@@ -25,6 +25,7 @@
 
 #include <benchmark/benchmark.h>
 #include <hwy/targets.h>
+#include <malloc.h>
 #include <sys/mman.h>
 
 #include <cmath>
@@ -238,10 +239,15 @@ vtkSmartPointer<vtkImageData> MakeVtkImage(int nx, int ny, int nz)
   return image;
 }
 
-/// The whole filter, VTK arrays in and out; every execution allocates its output anew (cold).
-void RunFilter(benchmark::State& state, int dimension, bool defaults, int threads)
+/**
+ * The whole filter, VTK arrays in and out. Every execution allocates its output anew: from memory that was
+ * used before, or, if `cold`, from pages that the system has to make first.
+ */
+void RunFilter(benchmark::State& state, int dimension, bool defaults, int threads, bool cold = false)
 {
-  auto image = dimension == 2 ? MakeVtkImage(1024, 512, 1) : MakeVtkImage(96, 80, 64);
+  mallopt(M_MMAP_THRESHOLD, cold ? 1 << 16 : 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  auto image = dimension == 2 ? MakeVtkImage(2048, 2048, 1) : MakeVtkImage(96, 80, 64);
   vtkNew<vtkSteerableNoiseFilter> filter;
   filter->SetInputData(image);
   filter->SetFeatureSize(16.0);
@@ -319,6 +325,19 @@ void RunLic(benchmark::State& state)
 }
 #endif
 
+constexpr std::int64_t Levels[] = { HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_SCALAR };
+
+/// What --level chose; 0: the machine's best.
+std::int64_t ChosenLevel = 0;
+
+/// Keeps to a SIMD level while it lives.
+class LevelForNow
+{
+public:
+  explicit LevelForNow(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
+  ~LevelForNow() { hwy::SetSupportedTargetsForTest(ChosenLevel); }
+};
+
 void Register(const std::string& name, const std::function<void(benchmark::State&)>& run)
 {
   benchmark::RegisterBenchmark(name.c_str(), run);
@@ -384,11 +403,31 @@ void RegisterAll()
       }
     }
   }
+  benchmark::RegisterBenchmark("Filter/2D/Quality0/Cold",
+    [](benchmark::State& s) { RunFilter(s, 2, false, 1, true); })
+    ->UseRealTime();
+  for (const std::int64_t target : Levels)
+  {
+    if ((hwy::SupportedTargets() & target) != 0)
+    {
+      for (const int dimension : { 2, 3 })
+      {
+        Register(
+          "Level/" + std::to_string(dimension) + "D/Quality0/" + hwy::TargetName(target),
+          [=](auto& s)
+          {
+            const LevelForNow level(target);
+            RunImage(s, Plain(0), dimension);
+          });
+      }
+    }
+  }
   Register("Cold/2D/Plain", [](auto& s) { RunColdOutput(s, false); });
   Register("Cold/2D/HugePages", [](auto& s) { RunColdOutput(s, true); });
   Register("Vtk/PerlinNoise", [](auto& s) { RunVtkPerlin(s); });
 #ifdef STEERABLENOISE_HAVE_LIC
-  Register("Vtk/ImageDataLIC2D", [](auto& s) { RunLic(s); });
+  // Its renderer works with threads of its own.
+  benchmark::RegisterBenchmark("Vtk/ImageDataLIC2D", RunLic)->MeasureProcessCPUTime();
 #endif
 }
 }
@@ -400,11 +439,11 @@ int main(int argc, char** argv)
   {
     if (std::strncmp(argv[i], "--level=", 8) == 0)
     {
-      for (std::int64_t target : { HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_SCALAR })
+      for (std::int64_t target : Levels)
       {
         if (std::string(hwy::TargetName(target)) == argv[i] + 8)
         {
-          hwy::SetSupportedTargetsForTest(target);
+          ChosenLevel = target;
         }
       }
       std::memmove(argv + i, argv + i + 1, (argc - i) * sizeof(char*));
@@ -412,8 +451,9 @@ int main(int argc, char** argv)
       break;
     }
   }
-  benchmark::AddCustomContext("simd", hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets()));
   RegisterAll();
+  hwy::SetSupportedTargetsForTest(ChosenLevel);
+  benchmark::AddCustomContext("simd", hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets()));
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * What cells tell about their points, summed up (private).
+ */
+#ifndef CellSums_h
+#define CellSums_h
+
+#include "vtkCellType.h"
+#include "vtkDataSet.h"
+#include "vtkFloatArray.h"
+#include "vtkGenericCell.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
+#include "vtkSMPTools.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace noise
+{
+/// Dimensions of the types of cell that a dataset has. From now on threads may ask it for cells.
+class CellDimensions
+{
+public:
+  explicit CellDimensions(vtkDataSet* dataset)
+    : Dimensions(VTK_NUMBER_OF_CELL_TYPES, 0)
+  {
+    std::vector<bool> known(VTK_NUMBER_OF_CELL_TYPES, false);
+    vtkNew<vtkGenericCell> cell;
+    for (vtkIdType id = 0; id < dataset->GetNumberOfCells(); ++id)
+    {
+      const int type = dataset->GetCellType(id);
+      if (!known.at(type))
+      {
+        known[type] = true;
+        cell->SetCellType(type);
+        this->Dimensions[type] = cell->GetCellDimension();
+        // VTK makes what it needs for this when it is first called.
+        vtkNew<vtkIdList> ids;
+        dataset->GetCellPoints(id, ids);
+      }
+    }
+  }
+
+  int Get(int type) const { return this->Dimensions[type]; }
+  bool Has(int dimension) const
+  {
+    return std::find(this->Dimensions.begin(), this->Dimensions.end(), dimension) !=
+      this->Dimensions.end();
+  }
+
+private:
+  std::vector<int> Dimensions;
+};
+
+/**
+ * Means over the cells of each point. Sums are exact, in steps of 2^-24 / scale up to 127 / scale, so they
+ * do not depend on the order of the cells, which differs between the pieces of a dataset.
+ */
+class PointSums
+{
+public:
+  /// What a cell adds to one of its points, in steps.
+  struct Share
+  {
+    vtkIdType Point;
+    Eigen::Vector3i Value;
+  };
+  using Shares = std::vector<Share>;
+
+  /// `means`: 3 components for each point of the dataset, the room in which it sums.
+  PointSums(vtkDataSet* dataset, vtkFloatArray* means, double scale)
+    : DataSet(dataset)
+    , Means(means->GetPointer(0))
+    , Sums(reinterpret_cast<std::int32_t*>(Means))
+    , StepsPerUnit(scale * 16777216.0)
+    , Counts(dataset->GetNumberOfPoints(), 0)
+  {
+    static_assert(sizeof(float) == sizeof(std::int32_t));
+    std::fill_n(this->Sums, 3 * this->Counts.size(), 0);
+  }
+
+  /// Appends a share. A value that is not finite is none.
+  void Append(Shares& shares, vtkIdType point, const Eigen::Vector3d& value) const
+  {
+    const Eigen::Vector3d steps = value * this->StepsPerUnit;
+    if (steps.allFinite())
+    {
+      shares.push_back({ point,
+        steps.array().round().max(-double(Largest)).min(double(Largest)).matrix().cast<int>() });
+    }
+  }
+
+  /**
+   * `getShares(cell, ids, shares)` appends those of a cell, `ids` is a list for its own use; it runs in
+   * threads. `lines`: v and -v are the same, so a sum takes them to its own side.
+   */
+  template <class GetShares>
+  void AddCells(bool lines, GetShares&& getShares)
+  {
+    // So many that threads are worth it, so few that their shares take little memory.
+    constexpr vtkIdType chunkSize = 128;
+    constexpr vtkIdType chunksPerBatch = 32;
+    const vtkIdType cells = this->DataSet->GetNumberOfCells();
+    std::vector<Shares> chunks(chunksPerBatch);
+    for (vtkIdType first = 0; first < cells; first += chunkSize * chunksPerBatch)
+    {
+      const vtkIdType end = std::min(cells, first + chunkSize * chunksPerBatch);
+      const vtkIdType used = (end - first + chunkSize - 1) / chunkSize;
+      vtkSMPTools::For(0, used, 1,
+        [&](vtkIdType begin, vtkIdType stop)
+        {
+          vtkNew<vtkIdList> ids;
+          for (vtkIdType chunk = begin; chunk < stop; ++chunk)
+          {
+            chunks[chunk].clear();
+            const vtkIdType last = std::min(end, first + (chunk + 1) * chunkSize);
+            for (vtkIdType cell = first + chunk * chunkSize; cell < last; ++cell)
+            {
+              getShares(cell, ids.Get(), chunks[chunk]);
+            }
+          }
+        });
+      for (vtkIdType chunk = 0; chunk < used; ++chunk)
+      {
+        for (const Share& share : chunks[chunk])
+        {
+          this->Add(share, lines);
+        }
+      }
+    }
+  }
+
+  /// Sums become means.
+  void Finish()
+  {
+    for (std::size_t i = 0; i < 3 * this->Counts.size(); ++i)
+    {
+      const double count = std::max<double>(1.0, this->Counts[i / 3]);
+      const std::int32_t sum = this->Sums[i];
+      this->Means[i] = static_cast<float>(sum / (count * this->StepsPerUnit));
+    }
+  }
+
+private:
+  static constexpr std::int32_t Largest = 127 << 24;
+
+  void Add(const Share& share, bool lines)
+  {
+    Eigen::Map<Eigen::Vector3i> sum(this->Sums + 3 * share.Point);
+    std::uint16_t& count = this->Counts[share.Point];
+    if (count == UINT16_MAX)
+    {
+      return; // so many cells tell enough
+    }
+    const bool turn = lines && sum.cast<double>().dot(share.Value.cast<double>()) < 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const std::int64_t value = turn ? -share.Value[axis] : share.Value[axis];
+      sum[axis] = static_cast<std::int32_t>(
+        std::clamp<std::int64_t>(sum[axis] + value, -Largest, Largest));
+    }
+    ++count;
+  }
+
+  vtkDataSet* DataSet;
+  float* Means;
+  std::int32_t* Sums;
+  double StepsPerUnit;
+  std::vector<std::uint16_t> Counts;
+};
+} // namespace noise
+
+#endif

@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NoiseCurvature.h"
+
+#include "CellSums.h"
+
+#include "vtkSMPTools.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace noise
+{
+namespace
+{
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Points of a cell with the directions there, all on one side, and room for them.
+struct CellPoints
+{
+  std::vector<vtkIdType> Ids;
+  std::vector<Vector3d> Places;
+  std::vector<Vector3d> Directions;
+};
+
+/// Unit vector, or 0 if there is none.
+Vector3d GetDirection(const steerable::TupleReader<float>& vectors, vtkIdType sample)
+{
+  float scratch[3];
+  const float* vector = vectors.Read(static_cast<std::size_t>(sample), 1, scratch);
+  const Vector3d v = Eigen::Map<const Eigen::Vector3f>(vector).cast<double>();
+  const double length = v.norm();
+  return std::isfinite(length) && length > 0.0 ? Vector3d(v / length) : Vector3d::Zero();
+}
+
+/// The matrix J that fits du ≈ J dx best, in directions in which there are dx.
+class GradientFit
+{
+public:
+  void Add(const Vector3d& dx, const Vector3d& du)
+  {
+    this->Squares += dx * dx.transpose();
+    this->Products += du * dx.transpose();
+  }
+
+  /// `dimension`: the dx are in a space of so many.
+  Matrix3d Solve(int dimension)
+  {
+    // A millionth of the longest is still a dx.
+    constexpr double thinnest = 1e-12;
+    const double size = this->Squares.trace() / 3.0;
+    if (!(size > 0.0) || !std::isfinite(size))
+    {
+      return Matrix3d::Zero();
+    }
+    const Matrix3d squares = this->Squares / size;
+    const Matrix3d products = this->Products / size;
+    if (dimension == 3)
+    {
+      Matrix3d inverse;
+      bool invertible;
+      squares.computeInverseWithCheck(inverse, invertible, 1e-6);
+      if (invertible)
+      {
+        return products * inverse;
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(squares);
+    Matrix3d gradient = Matrix3d::Zero();
+    for (int axis = 3 - dimension; axis < 3; ++axis)
+    {
+      const double extent = solver.eigenvalues()[axis];
+      if (extent > thinnest)
+      {
+        const Vector3d direction = solver.eigenvectors().col(axis);
+        gradient += products * direction * direction.transpose() / extent;
+      }
+    }
+    return gradient;
+  }
+
+private:
+  Matrix3d Squares = Matrix3d::Zero();
+  Matrix3d Products = Matrix3d::Zero();
+};
+
+/// Gradient of the points [first, first + count) of a cell.
+Matrix3d GetGradient(
+  const CellPoints& cell, std::size_t first, std::size_t count, int dimension)
+{
+  Vector3d meanPlace = Vector3d::Zero();
+  Vector3d meanDirection = Vector3d::Zero();
+  for (std::size_t i = first; i < first + count; ++i)
+  {
+    meanPlace += cell.Places[i] / static_cast<double>(count);
+    meanDirection += cell.Directions[i] / static_cast<double>(count);
+  }
+  GradientFit fit;
+  for (std::size_t i = first; i < first + count; ++i)
+  {
+    fit.Add(cell.Places[i] - meanPlace, cell.Directions[i] - meanDirection);
+  }
+  return fit.Solve(dimension);
+}
+
+/**
+ * How many points of a cell belong together: a strip is as many triangles, a line as many segments, as
+ * follow one another.
+ */
+std::size_t GetPartSize(int cellType, std::size_t points)
+{
+  switch (cellType)
+  {
+    case VTK_TRIANGLE_STRIP:
+      return 3;
+    case VTK_POLY_LINE:
+      return 2;
+    default:
+      return std::max<std::size_t>(points, 2);
+  }
+}
+
+/**
+ * Reads the points of a cell and the directions there, on the side of `side` or, if that is 0, of the
+ * first; `getDirection(point)` gives 0 where there is none, and such points are left out.
+ */
+template <class Get>
+void ReadCell(
+  vtkDataSet* dataset, vtkIdType id, Vector3d side, vtkIdList* ids, CellPoints& cell, Get&& getDirection)
+{
+  cell.Ids.clear();
+  cell.Places.clear();
+  cell.Directions.clear();
+  dataset->GetCellPoints(id, ids);
+  for (const vtkIdType point : *ids)
+  {
+    const Vector3d u = getDirection(point);
+    Vector3d place;
+    dataset->GetPoint(point, place.data());
+    if (u.isZero(0.0) || !place.allFinite())
+    {
+      continue;
+    }
+    side = side.isZero(0.0) ? u : side;
+    cell.Ids.push_back(point);
+    cell.Places.push_back(place);
+    cell.Directions.push_back(u.dot(side) < 0.0 ? Vector3d(-u) : u);
+  }
+}
+
+vtkSmartPointer<vtkFloatArray> NewVectors(vtkIdType count)
+{
+  auto array = vtkSmartPointer<vtkFloatArray>::New();
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(count);
+  return array;
+}
+
+/// Of points, from the cells around them.
+vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, double cellSize)
+{
+  const CellDimensions dimensions(dataset);
+  auto curvature = NewVectors(dataset->GetNumberOfPoints());
+  PointSums sums(dataset, curvature, cellSize);
+  sums.AddCells(false,
+    [&](vtkIdType id, vtkIdList* ids, PointSums::Shares& shares)
+    {
+      const int type = dataset->GetCellType(id);
+      const int dimension = dimensions.Get(type);
+      if (dimension == 0)
+      {
+        return;
+      }
+      thread_local CellPoints cell;
+      ReadCell(dataset, id, Vector3d::Zero(), ids, cell,
+        [&](vtkIdType point) { return GetDirection(vectors, point); });
+      const std::size_t size = GetPartSize(type, cell.Ids.size());
+      for (std::size_t first = 0; first + size <= cell.Ids.size(); ++first)
+      {
+        const Matrix3d gradient = GetGradient(cell, first, size, dimension);
+        for (std::size_t i = first; i < first + size; ++i)
+        {
+          sums.Append(shares, cell.Ids[i], gradient * cell.Directions[i]);
+        }
+      }
+    });
+  sums.Finish();
+  return curvature;
+}
+
+/// Of cells, whose directions go to their points first.
+vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors)
+{
+  const CellDimensions dimensions(dataset);
+  auto points = NewVectors(dataset->GetNumberOfPoints());
+  PointSums sums(dataset, points, 1.0);
+  sums.AddCells(true,
+    [&](vtkIdType id, vtkIdList* ids, PointSums::Shares& shares)
+    {
+      const Vector3d u = GetDirection(vectors, id);
+      dataset->GetCellPoints(id, ids);
+      for (vtkIdType i = 0; i < ids->GetNumberOfIds() && !u.isZero(0.0); ++i)
+      {
+        sums.Append(shares, ids->GetId(i), u);
+      }
+    });
+  sums.Finish();
+  auto curvature = NewVectors(dataset->GetNumberOfCells());
+  vtkSMPTools::For(0, dataset->GetNumberOfCells(), 1024,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      vtkNew<vtkIdList> ids;
+      CellPoints cell;
+      for (vtkIdType id = begin; id < end; ++id)
+      {
+        const Vector3d u = GetDirection(vectors, id);
+        Vector3d result = Vector3d::Zero();
+        if (!u.isZero(0.0))
+        {
+          ReadCell(dataset, id, u, ids, cell,
+            [&](vtkIdType point) -> Vector3d
+            {
+              return Eigen::Map<const Eigen::Vector3f>(points->GetPointer(3 * point)).cast<double>();
+            });
+          const int dimension = dimensions.Get(dataset->GetCellType(id));
+          result = GetGradient(cell, 0, cell.Ids.size(), dimension) * u;
+        }
+        Eigen::Map<Eigen::Vector3f>(curvature->GetPointer(3 * id)) = result.cast<float>();
+      }
+    });
+  return curvature;
+}
+} // namespace
+
+vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(vtkDataSet* dataset,
+  const steerable::TupleReader<float>& vectors, bool cells, double cellSize)
+{
+  return cells ? CurvatureOfCells(dataset, vectors) : CurvatureOfPoints(dataset, vectors, cellSize);
+}
+
+vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions)[3],
+  const steerable::TupleReader<double>& positions, const steerable::TupleReader<float>& vectors)
+{
+  const vtkIdType strides[3] = { 1, dimensions[0],
+    static_cast<vtkIdType>(dimensions[0]) * dimensions[1] };
+  const vtkIdType count = strides[2] * dimensions[2];
+  const auto axes = static_cast<int>(
+    std::count_if(dimensions, dimensions + 3, [](int samples) { return samples > 1; }));
+  auto curvature = NewVectors(count);
+  vtkSMPTools::For(0, count, 1024,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType i = begin; i < end; ++i)
+      {
+        const Vector3d u = GetDirection(vectors, i);
+        const auto getDifferences = [&](vtkIdType before, vtkIdType after, GradientFit& fit)
+        {
+          double scratch[3];
+          const auto read = [&](vtkIdType sample, Vector3d& place)
+          {
+            place = Eigen::Map<const Vector3d>(
+              positions.Read(static_cast<std::size_t>(sample), 1, scratch));
+            // As on images, a neighbour without a direction stands for no change.
+            const Vector3d direction = GetDirection(vectors, sample);
+            return direction.isZero(0.0) ? u : Vector3d(direction.dot(u) < 0.0 ? -direction : direction);
+          };
+          Vector3d low;
+          Vector3d high;
+          const Vector3d from = read(before, low);
+          const Vector3d to = read(after, high);
+          const Vector3d dx = high - low;
+          if (dx.allFinite())
+          {
+            fit.Add(dx, to - from);
+          }
+        };
+        GradientFit fit;
+        for (int axis = 0; axis < 3 && !u.isZero(0.0); ++axis)
+        {
+          const vtkIdType index = i / strides[axis] % dimensions[axis];
+          const vtkIdType before = index > 0 ? i - strides[axis] : i;
+          const vtkIdType after = index + 1 < dimensions[axis] ? i + strides[axis] : i;
+          if (before < after)
+          {
+            getDifferences(before, after, fit);
+          }
+        }
+        Eigen::Map<Eigen::Vector3f>(curvature->GetPointer(3 * i)) =
+          (fit.Solve(axes) * u).cast<float>();
+      }
+    });
+  return curvature;
+}
+} // namespace noise

@@ -5,7 +5,7 @@ import sys
 rates = {}
 for entry in json.load(open(sys.argv[1]))["benchmarks"]:
     if entry.get("aggregate_name") == "median":
-        rates[entry["run_name"].replace("/real_time", "")] = entry["points"]
+        rates[entry["run_name"].replace("/real_time", "").replace("/process_time", "")] = entry["points"]
 
 # What, its rate, what it is compared with, and what is aimed at.
 ROWS = []

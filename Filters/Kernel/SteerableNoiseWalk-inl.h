@@ -118,7 +118,6 @@ struct Group
   V Turn;
   V Change;
   V MostTurn;
-  V MostStep;
   V AlongRest;
   V TurnRest;
   V ChangeRest;
@@ -134,12 +133,10 @@ struct Group
     const V half = Const(0.5f);
     this->BendLength = hn::Sqrt(Dot(this->Bend, this->Bend));
     this->Places = this->Turn = this->Change = hn::Zero(DF());
-    V alongSteps = hn::Zero(DF());
     V bendTurn = hn::Zero(DF());
     for (int k = 0; k < K; ++k)
     {
       this->AlongStep[k] = Dot(this->PlaceStep[k], this->U);
-      alongSteps = hn::Add(alongSteps, hn::Abs(this->AlongStep[k]));
       this->Places = hn::Add(this->Places, Length(this->PlaceStep[k]));
       this->Turn = hn::Add(this->Turn, Length(this->UStep[k]));
       this->Change = hn::Add(this->Change, Length(this->BendStep[k]));
@@ -151,26 +148,24 @@ struct Group
     const V turn = hn::Add(this->Turn, this->DirectionRest);
     const V change = hn::Add(this->Change, this->BendRest);
     const V kappa = hn::Add(this->BendLength, change);
+    const V places = hn::Add(this->Places, this->PlaceRest);
     const V mostAcross = hn::MulAdd(mostSag, kappa, Const(extent.HalfWidth));
     this->MostTurn = hn::MulAdd(mostSag, bendTurn,
       hn::Mul(this->Turn,
         hn::MulAdd(turn, Const(mostAlong),
-          hn::MulAdd(mostSag, change, hn::Add(this->Places, Const(extent.HalfWidth))))));
-    const V mostStep = hn::Add(alongSteps, this->MostTurn);
+          hn::MulAdd(mostSag, change, hn::Add(places, Const(extent.HalfWidth))))));
     const V rest = hn::Add(this->PlaceRest,
-      hn::MulAdd(this->Places, this->Turn,
-        hn::Mul(this->DirectionRest,
-          hn::Add(this->Places, hn::Add(mostAcross, Const(mostAlong))))));
+      hn::MulAdd(places, this->Turn,
+        hn::Mul(this->DirectionRest, hn::Add(places, hn::Add(mostAcross, Const(mostAlong))))));
     this->AlongRest = rest;
     this->TurnRest = turn;
     this->ChangeRest = change;
     this->HalfKappa = hn::Mul(half, kappa);
     this->Linear = hn::MulAdd(kappa, rest, this->DirectionRest);
     this->HalfBendRest = hn::Mul(half, this->BendRest);
-    this->MostStep = mostStep;
   }
 
-  /// What t can be off; `steps`: Σ |sStep|, or MostStep, which is its largest value.
+  /// What t can be off; `steps`: Σ |sStep|, or more.
   WALK_INLINE V GetRest(V distance, V steps) const
   {
     const V both = hn::Add(steps, this->AlongRest);
@@ -207,11 +202,12 @@ struct Reach
   V U[N];
   V Bend[N];
   V BendLength;
+  V LargestBend; // of any sample
   V Length; // what can be ahead or behind included
   V HalfWidth;
   V LargestWidth;
   V InverseLength;
-  /// Largest distance between places, and how far a row is continued for samples that are ahead on it.
+  /// Largest distance of a place from the middle, and how far a row is continued for samples that are ahead on it.
   V Spread;
   V RowSpread;
   /// What s can be off that of the middle; and t, by Across[0] + Across[1] |s| + Across[2] s².
@@ -228,6 +224,7 @@ struct Reach
   template <int K>
   WALK_INLINE Reach(const Group<N, K>& group, const Extent& extent, V row)
     : BendLength(group.BendLength)
+    , LargestBend(hn::Add(group.HalfKappa, group.HalfKappa))
     , HalfWidth(Const(extent.HalfWidth))
     , InverseLength(Const(1.0f / extent.HalfLength))
     , Spread(hn::Add(group.Places, group.PlaceRest))
@@ -251,11 +248,10 @@ private:
   {
     const V half = Const(0.5f);
     this->RowSpread = row;
+    // Σ |sStep| at most.
     V along = group.MostTurn;
-    this->Across[0] = group.GetRest(hn::Zero(DF()), group.MostStep);
-    this->Across[1] = hn::MulAdd(group.BendLength, group.MostTurn,
-      hn::MulAdd(group.MostStep, group.ChangeRest, group.Linear));
-    this->Across[2] = hn::MulAdd(half, group.Change, group.HalfBendRest);
+    V steps0 = hn::Zero(DF());
+    V steps1 = hn::Zero(DF());
     for (int k = 0; k < K; ++k)
     {
       V place[N];
@@ -269,9 +265,13 @@ private:
         turn[axis] = hn::NegMulAdd(alongStep, this->Bend[axis], group.UStep[k][axis]);
       }
       along = hn::Add(along, hn::Abs(alongStep));
-      this->Across[0] = hn::Add(this->Across[0], hn::Sqrt(Dot(place, place)));
-      this->Across[1] = hn::Add(this->Across[1], hn::Sqrt(Dot(turn, turn)));
+      steps0 = hn::Add(steps0, hn::Sqrt(Dot(place, place)));
+      steps1 = hn::Add(steps1, hn::Sqrt(Dot(turn, turn)));
     }
+    this->Across[0] = hn::Add(steps0, group.GetRest(hn::Zero(DF()), along));
+    this->Across[1] = hn::Add(hn::MulAdd(group.BendLength, group.MostTurn, steps1),
+      hn::MulAdd(along, group.ChangeRest, group.Linear));
+    this->Across[2] = hn::MulAdd(half, group.Change, group.HalfBendRest);
     this->AlongReach = hn::Add(hn::Add(along, group.AlongRest), Const(extent.Travel));
     this->Length = hn::Add(Const(extent.HalfLength), this->AlongReach);
     this->LargestWidth = hn::Add(this->HalfWidth, Quadratic(this->Across, this->Length));
@@ -513,7 +513,8 @@ private:
       const V row =
         this->IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
       const Reach<N> reach(group, this->Surflet, row);
-      if (hn::GetLane(reach.LargestWidth) - this->Surflet.HalfWidth < LargestSpread)
+      if (hn::GetLane(reach.LargestWidth) - this->Surflet.HalfWidth < LargestSpread &&
+        hn::GetLane(reach.Spread) < LargestExtent)
       {
         this->AddTogether(Span<N>(begin, end, group), reach);
         return;
@@ -809,7 +810,7 @@ private:
       reach.Bend[axis] =
         this->Setup.Curved ? Load(this->Block.ClampedBend[axis] + first) : hn::Zero(DF());
     }
-    reach.BendLength = hn::Sqrt(Dot(reach.Bend, reach.Bend));
+    reach.BendLength = reach.LargestBend = hn::Sqrt(Dot(reach.Bend, reach.Bend));
     const V one = Const(1.0f);
     const V rootInverse = hn::Div(one, hn::Sqrt(Load(this->Along + first)));
     const V length = hn::MulAdd(Const(this->GetLengthSupport()), rootInverse, Const(Slack));
@@ -891,11 +892,14 @@ private:
       hn::Sqrt(hn::Max(hn::NegMulAdd(result.Along, result.Along, Const(w2)), hn::Zero(DF())));
     result.Width = hn::Mul(hn::Add(reach.LargestWidth, this->GetLooseness(reach)), across);
     result.InverseAlong = Inverse(result.Along);
-    // The window is a box of places; oblique indices need √3 times as many to cover it.
-    const V box = hn::MulAdd(reach.Spread, Const(std::sqrt(w2)),
-      Const(this->Setup.WindowReach * (this->IsOblique() ? 1.75f : 1.0f)));
-    result.BoxLow = hn::Sub(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterUp)));
-    result.BoxHigh = hn::Add(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterDown)));
+    // Window and jitter are boxes of places; oblique indices need √3 times as many to cover them.
+    const float more = this->IsOblique() ? 1.75f : 1.0f;
+    const V box = hn::MulAdd(
+      reach.Spread, Const(std::sqrt(w2)), Const(this->Setup.WindowReach * more));
+    result.BoxLow =
+      hn::Sub(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterUp * more)));
+    result.BoxHigh =
+      hn::Add(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterDown * more)));
     return result;
   }
 
@@ -903,7 +907,7 @@ private:
   WALK_INLINE V GetLooseness(const Reach<N>& reach) const
   {
     const V radius = Const(this->Setup.JitterRadius);
-    return hn::MulAdd(hn::Mul(radius, reach.BendLength), hn::Add(reach.Length, radius), radius);
+    return hn::MulAdd(hn::Mul(radius, reach.LargestBend), hn::Add(reach.Length, radius), radius);
   }
 
   /// s²/2 on an interval, times a factor: its least and greatest value.
@@ -1771,6 +1775,9 @@ private:
 
   /// Samples that are farther apart than this, as their surflets see it, do not share a list.
   static constexpr float LargestSpread = 1.5f;
+
+  /// Nor do samples this many cells from their middle: distances of corners must keep their precision.
+  static constexpr float LargestExtent = 16.0f;
 
   /// A little more than needed: every sample must see all its own corners, whatever rounding does.
   static constexpr float Slack = 1e-3f;

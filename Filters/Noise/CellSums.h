@@ -17,12 +17,15 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 namespace noise
 {
+/// For PointSums of unit vectors: a millionth, and room for two thousand that are alike.
+constexpr double DirectionSteps = 1 << 20;
+
 /// Dimensions of the types of cell that a dataset has. From now on threads may ask it for cells.
 class CellDimensions
 {
@@ -59,8 +62,8 @@ private:
 };
 
 /**
- * Means over the cells of each point. Sums are exact, in steps of 2^-24 / scale up to 127 / scale, so they
- * do not depend on the order of the cells, which differs between the pieces of a dataset.
+ * Means over the cells of each point, as far as they go into 2^31 steps together. Sums are exact, so that
+ * they do not depend on the order of the cells, which differs between the pieces of a dataset.
  */
 class PointSums
 {
@@ -74,11 +77,11 @@ public:
   using Shares = std::vector<Share>;
 
   /// `means`: 3 components for each point of the dataset, the room in which it sums.
-  PointSums(vtkDataSet* dataset, vtkFloatArray* means, double scale)
+  PointSums(vtkDataSet* dataset, vtkFloatArray* means, double stepsPerUnit)
     : DataSet(dataset)
     , Means(means->GetPointer(0))
     , Sums(reinterpret_cast<std::int32_t*>(Means))
-    , StepsPerUnit(scale * 16777216.0)
+    , StepsPerUnit(stepsPerUnit)
     , Counts(dataset->GetNumberOfPoints(), 0)
   {
     static_assert(sizeof(float) == sizeof(std::int32_t));
@@ -92,13 +95,14 @@ public:
     if (steps.allFinite())
     {
       shares.push_back({ point,
-        steps.array().round().max(-double(Largest)).min(double(Largest)).matrix().cast<int>() });
+        steps.array().round().max(-double(INT32_MAX)).min(double(INT32_MAX)).matrix().cast<int>() });
     }
   }
 
   /**
    * `getShares(cell, ids, shares)` appends those of a cell, `ids` is a list for its own use; it runs in
-   * threads. `lines`: v and -v are the same, so a sum takes them to its own side.
+   * threads. `lines`: v and -v are the same, so a sum takes them to its own side, which their order decides
+   * where they are across one another.
    */
   template <class GetShares>
   void AddCells(bool lines, GetShares&& getShares)
@@ -148,8 +152,6 @@ public:
   }
 
 private:
-  static constexpr std::int32_t Largest = 127 << 24;
-
   void Add(const Share& share, bool lines)
   {
     Eigen::Map<Eigen::Vector3i> sum(this->Sums + 3 * share.Point);
@@ -159,12 +161,17 @@ private:
       return; // so many cells tell enough
     }
     const bool turn = lines && sum.cast<double>().dot(share.Value.cast<double>()) < 0.0;
+    std::int64_t total[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      const std::int64_t value = turn ? -share.Value[axis] : share.Value[axis];
-      sum[axis] = static_cast<std::int32_t>(
-        std::clamp<std::int64_t>(sum[axis] + value, -Largest, Largest));
+      const std::int64_t value = share.Value[axis];
+      total[axis] = sum[axis] + (turn ? -value : value);
+      if (std::abs(total[axis]) > INT32_MAX)
+      {
+        return; // the mean of those before is kept
+      }
     }
+    std::copy(total, total + 3, sum.data());
     ++count;
   }
 

@@ -127,11 +127,11 @@ std::size_t GetPartSize(int cellType, std::size_t points)
 
 /**
  * Reads the points of a cell and the directions there, on the side of `side` or, if that is 0, of the
- * first; `getDirection(point)` gives 0 where there is none, and such points are left out.
+ * first; `getDirection(point)` gives 0 where there is none. Such points are left out, or `keepAll`.
  */
 template <class Get>
-void ReadCell(
-  vtkDataSet* dataset, vtkIdType id, Vector3d side, vtkIdList* ids, CellPoints& cell, Get&& getDirection)
+void ReadCell(vtkDataSet* dataset, vtkIdType id, Vector3d side, bool keepAll, vtkIdList* ids,
+  CellPoints& cell, Get&& getDirection)
 {
   cell.Ids.clear();
   cell.Places.clear();
@@ -139,12 +139,16 @@ void ReadCell(
   dataset->GetCellPoints(id, ids);
   for (const vtkIdType point : *ids)
   {
-    const Vector3d u = getDirection(point);
+    Vector3d u = getDirection(point);
     Vector3d place;
     dataset->GetPoint(point, place.data());
     if (u.isZero(0.0) || !place.allFinite())
     {
-      continue;
+      if (!keepAll)
+      {
+        continue;
+      }
+      u.setZero();
     }
     side = side.isZero(0.0) ? u : side;
     cell.Ids.push_back(point);
@@ -167,7 +171,8 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
 {
   const CellDimensions dimensions(dataset);
   auto curvature = NewVectors(dataset->GetNumberOfPoints());
-  PointSums sums(dataset, curvature, cellSize);
+  // The noise takes bends up to 1 / cellSize: room for 127 cells of such, and finer than it sees.
+  PointSums sums(dataset, curvature, cellSize * (1 << 24));
   sums.AddCells(false,
     [&](vtkIdType id, vtkIdList* ids, PointSums::Shares& shares)
     {
@@ -178,11 +183,18 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
         return;
       }
       thread_local CellPoints cell;
-      ReadCell(dataset, id, Vector3d::Zero(), ids, cell,
+      const bool parts = type == VTK_TRIANGLE_STRIP || type == VTK_POLY_LINE;
+      ReadCell(dataset, id, Vector3d::Zero(), parts, ids, cell,
         [&](vtkIdType point) { return GetDirection(vectors, point); });
       const std::size_t size = GetPartSize(type, cell.Ids.size());
       for (std::size_t first = 0; first + size <= cell.Ids.size(); ++first)
       {
+        const auto begin = cell.Directions.begin() + static_cast<std::ptrdiff_t>(first);
+        if (std::any_of(begin, begin + static_cast<std::ptrdiff_t>(size),
+              [](const Vector3d& u) { return u.isZero(0.0); }))
+        {
+          continue;
+        }
         const Matrix3d gradient = GetGradient(cell, first, size, dimension);
         for (std::size_t i = first; i < first + size; ++i)
         {
@@ -200,7 +212,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
 {
   const CellDimensions dimensions(dataset);
   auto points = NewVectors(dataset->GetNumberOfPoints());
-  PointSums sums(dataset, points, 1.0);
+  PointSums sums(dataset, points, DirectionSteps);
   sums.AddCells(true,
     [&](vtkIdType id, vtkIdList* ids, PointSums::Shares& shares)
     {
@@ -224,7 +236,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
         Vector3d result = Vector3d::Zero();
         if (!u.isZero(0.0))
         {
-          ReadCell(dataset, id, u, ids, cell,
+          ReadCell(dataset, id, u, false, ids, cell,
             [&](vtkIdType point) -> Vector3d
             {
               return Eigen::Map<const Eigen::Vector3f>(points->GetPointer(3 * point)).cast<double>();

@@ -23,7 +23,7 @@ namespace noise
  * 3 components per point (`cells`: per cell) in 1 / world units, 0 where there is no direction. Each cell
  * has the gradient that fits the directions at its points best, in the least-squares sense, and a point the
  * mean over its cells. On simplices and parallelepipeds that is what VTK's cells give at their centres.
- * `cellSize`: in world units, of the noise; curvatures are looked at in steps of 2^-24 / cellSize.
+ * `cellSize`: in world units, of the noise; curvatures are summed in steps of 2^-24 / cellSize.
  */
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(vtkDataSet* dataset,
   const steerable::TupleReader<float>& vectors, bool cells, double cellSize);

@@ -5,6 +5,7 @@
 #include "CellSums.h"
 #include "MetricTensor.h"
 #include "NoiseCurvature.h"
+#include "NoiseThreads.h"
 
 #include "vtkCell.h"
 #include "vtkCellCenters.h"
@@ -332,8 +333,12 @@ void Samples::SetPoints()
   }
   if (IsVector(this->Array->GetNumberOfComponents()))
   {
-    this->Normals =
-      GetSlabAxis(this->DataSet) >= 0 ? this->ComputeSlabNormals() : this->ComputeNormals();
+    WithThreads(
+      [&]
+      {
+        this->Normals =
+          GetSlabAxis(this->DataSet) >= 0 ? this->ComputeSlabNormals() : this->ComputeNormals();
+      });
   }
   if (this->Normals)
   {
@@ -384,7 +389,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
     return normals;
   }
 
-  PointSums sums(this->DataSet, normals, 1.0);
+  PointSums sums(this->DataSet, normals, DirectionSteps);
   // Neighbours that face the other way count all the same: the metric has no sides.
   sums.AddCells(true,
     [&](vtkIdType cell, vtkIdList* ids, PointSums::Shares& shares)

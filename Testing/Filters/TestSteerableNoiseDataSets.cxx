@@ -13,6 +13,7 @@
 #include "vtkGenericCell.h"
 #include "vtkImageDataToPointSet.h"
 #include "vtkInformation.h"
+#include "vtkMath.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkNonOverlappingAMR.h"
 #include "vtkOverlappingAMR.h"
@@ -32,6 +33,7 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -319,6 +321,38 @@ TEST(SteerableNoiseDataSets, SurfacesTakeTheMetricOfTheirTangentPlane)
     EXPECT_NEAR(along, 0.5, 0.05) << "the normal is the second axis";
   }
   EXPECT_EQ(surface->GetPointData()->GetNumberOfArrays(), 1) << "the input was written";
+}
+
+TEST(SteerableNoiseDataSets, TheHubOfAFanHasTheNormalOfItsTriangles)
+{
+  // More triangles than a sum has room for.
+  constexpr int spokes = 3000;
+  const Eigen::Vector3d normal(0.6, 0.0, 0.8);
+  const Eigen::Vector3d side(0.8, 0.0, -0.6);
+  vtkNew<vtkUnstructuredGrid> fan;
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->InsertNextPoint(0.0, 0.0, 0.0);
+  for (int i = 0; i < spokes; ++i)
+  {
+    const double angle = 2.0 * vtkMath::Pi() * i / spokes;
+    const Eigen::Vector3d p = std::cos(angle) * side + std::sin(angle) * Eigen::Vector3d::UnitY();
+    points->InsertNextPoint(p.data());
+  }
+  fan->SetPoints(points);
+  for (vtkIdType i = 0; i < spokes; ++i)
+  {
+    const vtkIdType ids[] = { 0, 1 + i, 1 + (i + 1) % spokes };
+    fan->InsertNextCell(VTK_TRIANGLE, 3, ids);
+  }
+  AddFlow(fan);
+  const Result result = Apply(fan.Get(), [](vtkSteerableNoiseFilter* f) { f->OutputMetricOn(); });
+  EXPECT_EQ(result.Errors, 0);
+  double m[6];
+  vtkDataSet::SafeDownCast(result.Output)->GetPointData()->GetArray("Metric")->GetTuple(0, m);
+  Eigen::Matrix3d metric;
+  metric << m[0], m[3], m[5], m[3], m[1], m[4], m[5], m[4], m[2];
+  EXPECT_LT((metric * normal - 0.5 * normal).norm(), 1e-4);
 }
 
 TEST(SteerableNoiseDataSets, FlatSlabsOneCellThickAreSurfaces)

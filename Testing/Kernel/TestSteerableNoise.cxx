@@ -896,6 +896,36 @@ TEST(SteerableNoise, HasTheSameBitsAloneAndAmongItsNeighbours)
   }
 }
 
+TEST(SteerableNoise, HasTheSameBitsAloneHoweverFarItsNeighboursAre)
+{
+  // In a constant flow nothing but the distance keeps samples from sharing a list.
+  constexpr std::size_t count = 300;
+  RandomSamples samples(count, 30.0, 0.0, 4);
+  std::vector<std::size_t> one(count);
+  std::iota(one.begin(), one.end(), 0);
+  NoiseParameters parameters;
+  parameters.FeatureSize = 1.0;
+  parameters.Quality = 8;
+  for (const double spacing : { 1.0, 3.3, 8.1, 20.0, 57.0, 150.0, 1e5 })
+  {
+    for (std::size_t i = 0; i < 3 * count; ++i)
+    {
+      const Eigen::Vector3d u(0.8, 0.36, 0.48);
+      samples.Vectors[i] = static_cast<float>(u[i % 3]);
+      samples.Positions[i] = static_cast<double>(i / 3) * spacing * u[i % 3];
+      samples.Curvature[i] = 0.0f;
+    }
+    EXPECT_EQ(CountDifferent(SplitNoise<2>(parameters, samples, one),
+                SplitNoise<2>(parameters, samples, {})),
+      0)
+      << spacing;
+    EXPECT_EQ(CountDifferent(SplitNoise<3>(parameters, samples, one),
+                SplitNoise<3>(parameters, samples, {})),
+      0)
+      << spacing;
+  }
+}
+
 TEST(SteerableNoise, HasTheSameBitsInAnyOrderOfPoints)
 {
   // Other neighbours in the register, same value.

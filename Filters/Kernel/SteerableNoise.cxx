@@ -81,8 +81,8 @@ NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field
     p.Gradients != GradientSet::Uniform || p.Motion || !p.AnisotropicWeight;
   setup.Biaxial = dimension == 3 && (field.Tensors || field.Normals);
   setup.Curved = curved;
-  setup.SingleCell = p.Quality == 0 && !setup.Variant && p.LatticeWindow && !setup.Biaxial && !curved &&
-    p.Normalize == Normalization::None;
+  setup.SingleCell = p.Quality == 0 && !setup.Variant && p.LatticeWindow && !setup.Biaxial &&
+    !curved && p.Normalize == Normalization::None;
   setup.Uniform = setup.SingleCell && p.StrengthBy == StrengthMode::Constant &&
     !(p.MaskThreshold > 0.0) && p.Octaves == 1 && !p.Turbulence;
   setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;

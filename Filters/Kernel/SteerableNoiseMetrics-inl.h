@@ -238,8 +238,8 @@ void PadTail(MetricBlock& block, std::size_t end)
 
 /// Tensors go one by one through Eigen's solver.
 template <int N>
-void MetricsOfTensors(
-  const NoiseSetup& setup, const float* tuples, std::size_t at, std::size_t count, MetricBlock& block)
+void MetricsOfTensors(const NoiseSetup& setup, const float* tuples, std::size_t at,
+  std::size_t count, MetricBlock& block)
 {
   for (std::size_t i = 0; i < count; ++i)
   {

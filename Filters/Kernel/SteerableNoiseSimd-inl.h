@@ -522,8 +522,8 @@ void PatchCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field&
   // The rows with `stride` samples to either side; beyond the ends the last one again.
   const std::int64_t left = std::min(stride, i0);
   const std::int64_t right = std::min(stride, size[0] - i0 - columns);
-  const auto readRow = [&](std::int64_t slot, std::int64_t j, std::int64_t k, std::int64_t before,
-                         std::int64_t after)
+  const auto readRow =
+    [&](std::int64_t slot, std::int64_t j, std::int64_t k, std::int64_t before, std::int64_t after)
   {
     float* to[3];
     for (int axis = 0; axis < 3; ++axis)
@@ -555,8 +555,8 @@ void PatchCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field&
     }
     if (size[0] > 1)
     {
-      AddDerivative<N>(
-        block, at, patch.Columns, 0, getRow(r, -stride), getRow(r, stride), scaleX.data() + i0, true);
+      AddDerivative<N>(block, at, patch.Columns, 0, getRow(r, -stride), getRow(r, stride),
+        scaleX.data() + i0, true);
     }
   }
   for (int axis = 1; axis < N; ++axis)
@@ -684,7 +684,8 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
   {
     return counts;
   }
-  const std::unique_ptr<MetricBlock> block(new MetricBlock); // not zeroed: what is read is written before
+  const std::unique_ptr<MetricBlock> block(
+    new MetricBlock); // not zeroed: what is read is written before
   std::vector<ImageOctave<N>> octaves;
   for (const OctaveSetup& octave : setup.Octaves)
   {
@@ -711,8 +712,8 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
   {
     patch.First[1] = static_cast<std::int64_t>(row) % ny;
     patch.First[2] = static_cast<std::int64_t>(row) / ny;
-    patch.Rows = std::min(
-      rowEnd - row, static_cast<std::size_t>(std::min(mostRows, ny - patch.First[1])));
+    patch.Rows =
+      std::min(rowEnd - row, static_cast<std::size_t>(std::min(mostRows, ny - patch.First[1])));
     for (std::int64_t& i0 = patch.First[0] = 0; i0 < nx; i0 += mostColumns)
     {
       patch.Columns = static_cast<std::size_t>(std::min(mostColumns, nx - i0));
@@ -765,7 +766,8 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
   const Field& field, std::size_t begin, std::size_t end, float* noise)
 {
   EvaluationCounts counts;
-  const std::unique_ptr<MetricBlock> block(new MetricBlock); // not zeroed: what is read is written before
+  const std::unique_ptr<MetricBlock> block(
+    new MetricBlock); // not zeroed: what is read is written before
   for (std::size_t first = begin; first < end; first += BlockSize)
   {
     const std::size_t count = std::min(BlockSize, end - first);
@@ -781,8 +783,8 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     const double* place = positions.Read(first, count, block->Positions);
     for (const OctaveSetup& octave : setup.Octaves)
     {
-      AddPoints<N>(
-        setup, octave, place, count, uniform ? noise + first : nullptr, *block, counts.VisitedCorners);
+      AddPoints<N>(setup, octave, place, count, uniform ? noise + first : nullptr, *block,
+        counts.VisitedCorners);
     }
     if (!uniform)
     {

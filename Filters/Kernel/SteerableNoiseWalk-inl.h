@@ -89,36 +89,37 @@ struct Extent
 };
 
 /**
- * Groups of samples, one in each lane or the same in all. They change almost linearly with K numbers λ in
- * [-1, 1]: a sample is at Place + Σ λ PlaceStep, and so on, up to small rests. Distances s along and t
- * across are from the bent axis of the middle.
+ * A group of samples, the same in all lanes. They change almost linearly with two numbers λ in [-1, 1], one
+ * within a register, the other from one to the next: a sample is at Place + Σ λ PlaceStep, and so on, up to
+ * small rests. Distances s along and t across are from the bent axis of the middle.
  *
  * Such a sample sees a corner at v - Σ λ PlaceStep, along u = U + Σ λ UStep, with the bend + Σ λ BendStep,
  * each up to its rest. Its s is therefore s + Σ λ sStep up to AlongRest, with sStep = v UStep - AlongStep,
  * and across U, which only takes away, its t is t - Σ λ (PlaceStep + s UStep + s²/2 BendStep + s sStep
  * Bend) up to GetRest(s, Σ |sStep|).
  */
-template <int N, int K>
+template <int N>
 struct Group
 {
   V Place[N];
   V U[N];
   V Bend[N];
-  V PlaceStep[K][N]; // as distances, not in indices of the lattice
-  V UStep[K][N];
-  V BendStep[K][N];
+  V PlaceStep[2][N]; // as distances, not in indices of the lattice
+  V UStep[2][N];
+  V BendStep[2][N];
   V PlaceRest;
   V DirectionRest;
   V BendRest;
 
   V BendLength;
-  V AlongStep[K];
+  V AlongStep[2];
   /// Sums over the steps: of their lengths, and the largest v UStep.
   V Places;
   V Turn;
   V Change;
   V MostTurn;
   V AlongRest;
+  /// What GetRest is made of.
   V TurnRest;
   V ChangeRest;
   V HalfKappa;
@@ -134,7 +135,7 @@ struct Group
     this->BendLength = hn::Sqrt(Dot(this->Bend, this->Bend));
     this->Places = this->Turn = this->Change = hn::Zero(DF());
     V bendTurn = hn::Zero(DF());
-    for (int k = 0; k < K; ++k)
+    for (int k = 0; k < 2; ++k)
     {
       this->AlongStep[k] = Dot(this->PlaceStep[k], this->U);
       this->Places = hn::Add(this->Places, Length(this->PlaceStep[k]));
@@ -203,11 +204,11 @@ struct Reach
   V Bend[N];
   V BendLength;
   V LargestBend; // of any sample
-  V Length; // what can be ahead or behind included
+  V Length;      // what can be ahead or behind included
   V HalfWidth;
   V LargestWidth;
   V InverseLength;
-  /// Largest distance of a place from the middle, and how far a row is continued for samples that are ahead on it.
+  /// Largest distance of a place from the middle; how far rows are continued for samples ahead on them.
   V Spread;
   V RowSpread;
   /// What s can be off that of the middle; and t, by Across[0] + Across[1] |s| + Across[2] s².
@@ -221,8 +222,7 @@ struct Reach
    * All that a group reaches. Of its first step the part on a lattice row, as long as `row`, is either a
    * step like others, or the row is continued by it.
    */
-  template <int K>
-  WALK_INLINE Reach(const Group<N, K>& group, const Extent& extent, V row)
+  WALK_INLINE Reach(const Group<N>& group, const Extent& extent, V row)
     : BendLength(group.BendLength)
     , LargestBend(hn::Add(group.HalfKappa, group.HalfKappa))
     , HalfWidth(Const(extent.HalfWidth))
@@ -243,8 +243,7 @@ struct Reach
   }
 
 private:
-  template <int K>
-  WALK_INLINE void SetAcross(const Group<N, K>& group, const Extent& extent, V row)
+  WALK_INLINE void SetAcross(const Group<N>& group, const Extent& extent, V row)
   {
     const V half = Const(0.5f);
     this->RowSpread = row;
@@ -252,7 +251,7 @@ private:
     V along = group.MostTurn;
     V steps0 = hn::Zero(DF());
     V steps1 = hn::Zero(DF());
-    for (int k = 0; k < K; ++k)
+    for (int k = 0; k < 2; ++k)
     {
       V place[N];
       std::copy(group.PlaceStep[k], group.PlaceStep[k] + N, place);
@@ -322,8 +321,8 @@ WALK_INLINE void ToAcross(const V (&v)[N], const V (&u)[N], V (&across)[AxesAcro
 }
 
 /**
- * Registers that share a list, as a group that changes with λ within each of them and with μ from one to
- * the next; what a corner needs of it to find out which of them it reaches.
+ * Registers that share a list, as a group that changes with λ within each and with μ from one to the next;
+ * what a corner needs of it to find out which of them it reaches.
  */
 template <int N>
 struct Span
@@ -335,9 +334,9 @@ struct Span
   V PlaceStep[2][AxesAcross<N>];
   V UStep[2][AxesAcross<N>];
   V BendStep[2][AxesAcross<N>];
-  const Group<N, 2>& Whole;
+  const Group<N>& Whole;
 
-  WALK_INLINE Span(std::size_t begin, std::size_t end, const Group<N, 2>& group)
+  WALK_INLINE Span(std::size_t begin, std::size_t end, const Group<N>& group)
     : Begin(begin)
     , End(end)
     , Whole(group)
@@ -354,9 +353,9 @@ struct Span
   /// μ of a register.
   float GetMu(std::size_t r) const
   {
-    return this->End - this->Begin < 2
-      ? 0.0f
-      : 2.0f * static_cast<float>(r - this->Begin) / static_cast<float>(this->End - this->Begin - 1) -
+    return this->End - this->Begin < 2 ? 0.0f
+                                       : 2.0f * static_cast<float>(r - this->Begin) /
+          static_cast<float>(this->End - this->Begin - 1) -
         1.0f;
   }
 };
@@ -386,8 +385,8 @@ struct View
       const V step2 = hn::Add(Dot(step, step), Const(1e-20f));
       const V best = hn::Max(hn::Min(hn::Div(tStep, step2), one), hn::Neg(one));
       const V least = hn::MulAdd(hn::MulSub(best, step2, hn::Add(tStep, tStep)), best, Dot(t, t));
-      return hn::And(hn::Le(least, hn::MulAdd(width, width, Const(1e-5f))),
-        hn::Ge(width, hn::Zero(DF())));
+      return hn::And(
+        hn::Le(least, hn::MulAdd(width, width, Const(1e-5f))), hn::Ge(width, hn::Zero(DF())));
     }
   }
 };
@@ -509,9 +508,8 @@ private:
     const float* rest = this->GroupLines.PlaceRest;
     if (*std::max_element(rest + begin, rest + end) < LargestSpread) // else it cannot be
     {
-      const Group<N, 2> group = this->GetGroup(begin, end);
-      const V row =
-        this->IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
+      const Group<N> group = this->GetGroup(begin, end);
+      const V row = this->IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
       const Reach<N> reach(group, this->Surflet, row);
       if (hn::GetLane(reach.LargestWidth) - this->Surflet.HalfWidth < LargestSpread &&
         hn::GetLane(reach.Spread) < LargestExtent)
@@ -649,7 +647,8 @@ private:
   }
 
   template <std::size_t Axes, std::size_t Room>
-  static WALK_INLINE void LoadAll(const float (&arrays)[Axes][Room], std::size_t i, V (&values)[Axes])
+  static WALK_INLINE void LoadAll(
+    const float (&arrays)[Axes][Room], std::size_t i, V (&values)[Axes])
   {
     for (std::size_t axis = 0; axis < Axes; ++axis)
     {
@@ -658,7 +657,8 @@ private:
   }
 
   template <std::size_t Axes, std::size_t Room>
-  static WALK_INLINE void StoreAll(const V (&values)[Axes], float (&arrays)[Axes][Room], std::size_t i)
+  static WALK_INLINE void StoreAll(
+    const V (&values)[Axes], float (&arrays)[Axes][Room], std::size_t i)
   {
     for (std::size_t axis = 0; axis < Axes; ++axis)
     {
@@ -678,7 +678,7 @@ private:
   }
 
   /// The middle of unit vectors is shorter than 1, and bends and changes are not quite across it.
-  static WALK_INLINE void SetAcrossFlow(Group<N, 2>& group)
+  static WALK_INLINE void SetAcrossFlow(Group<N>& group)
   {
     const V norm = hn::Sqrt(Dot(group.U, group.U));
     const V inverse = Inverse(norm);
@@ -743,20 +743,19 @@ private:
         const V step = hn::Sub(hn::Load(DF(), steps[axis] + i), change[0][axis]);
         step2 = hn::MulAdd(step, step, step2);
       }
-      const auto used = hn::And(
-        hn::Ge(r, hn::Zero(DF())), hn::Lt(r, Const(static_cast<float>(end - begin))));
-      const V rest =
-        hn::Add(hn::Load(DF(), rests + i), hn::Add(hn::Sqrt(rest2), hn::Sqrt(step2)));
+      const auto used =
+        hn::And(hn::Ge(r, hn::Zero(DF())), hn::Lt(r, Const(static_cast<float>(end - begin))));
+      const V rest = hn::Add(hn::Load(DF(), rests + i), hn::Add(hn::Sqrt(rest2), hn::Sqrt(step2)));
       most = hn::Max(most, hn::IfThenElseZero(used, rest));
     }
     return hn::MaxOfLanes(DF(), most);
   }
 
   /// The registers [begin, end) as a group. Offsets count from its first cell from now on.
-  WALK_INLINE Group<N, 2> GetGroup(std::size_t begin, std::size_t end)
+  WALK_INLINE Group<N> GetGroup(std::size_t begin, std::size_t end)
   {
     const Lines<N>& lines = this->GroupLines;
-    Group<N, 2> group;
+    Group<N> group;
     for (int axis = 0; axis < N; ++axis)
     {
       this->Cell[axis] = hn::Set(DU(), lines.Cell[axis][begin]);
@@ -765,8 +764,7 @@ private:
       begin, end,
       [&](int axis, std::size_t r) HWY_ATTR
       {
-        const auto cells =
-          static_cast<std::int32_t>(lines.Cell[axis][r] - lines.Cell[axis][begin]);
+        const auto cells = static_cast<std::int32_t>(lines.Cell[axis][r] - lines.Cell[axis][begin]);
         return lines.Place[axis][r] + static_cast<float>(cells);
       },
       lines.PlaceStep, lines.PlaceRest, group.Place, group.PlaceStep);
@@ -846,8 +844,7 @@ private:
         place[i] = hn::Mul(index[0], Const(this->Setup.LatticeSteps[i][0]));
         for (int j = 1; j < N; ++j)
         {
-          place[i] = hn::MulAdd(
-            index[j], Const(this->Setup.LatticeSteps[i][j]), place[i]);
+          place[i] = hn::MulAdd(index[j], Const(this->Setup.LatticeSteps[i][j]), place[i]);
         }
       }
     }
@@ -894,12 +891,10 @@ private:
     result.InverseAlong = Inverse(result.Along);
     // Window and jitter are boxes of places; oblique indices need √3 times as many to cover them.
     const float more = this->IsOblique() ? 1.75f : 1.0f;
-    const V box = hn::MulAdd(
-      reach.Spread, Const(std::sqrt(w2)), Const(this->Setup.WindowReach * more));
-    result.BoxLow =
-      hn::Sub(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterUp * more)));
-    result.BoxHigh =
-      hn::Add(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterDown * more)));
+    const V box =
+      hn::MulAdd(reach.Spread, Const(std::sqrt(w2)), Const(this->Setup.WindowReach * more));
+    result.BoxLow = hn::Sub(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterUp * more)));
+    result.BoxHigh = hn::Add(reach.Place[axis], hn::Add(box, Const(this->Setup.JitterDown * more)));
     return result;
   }
 
@@ -1105,8 +1100,7 @@ private:
     for (int i = 0; i < N; ++i)
     {
       t0[i] = hn::NegMulAdd(s0, reach.U[i], row[i]);
-      te[i] =
-        hn::NegMulAdd(se, reach.U[i], Const(this->Setup.LatticeSteps[i][0]));
+      te[i] = hn::NegMulAdd(se, reach.U[i], Const(this->Setup.LatticeSteps[i][0]));
     }
     const V inverse = Inverse(se);
     const V middle = hn::Neg(hn::Mul(s0, inverse));
@@ -1244,10 +1238,8 @@ private:
         {
           described.FromRow[axis] = GetDistance(sample, offset[axis], axis);
         }
-        this->WithKind(
-          [&](auto curved, auto normalize) HWY_ATTR {
-            this->template AddSurflet<curved(), normalize()>(sample, described, this->Total[r]);
-          });
+        this->WithKind([&](auto curved, auto normalize) HWY_ATTR
+          { this->template AddSurflet<curved(), normalize()>(sample, described, this->Total[r]); });
         this->Visited += this->Count[r];
       }
     }
@@ -1370,10 +1362,8 @@ private:
       this->Visited += this->Count[r] * hwy::PopCount(bits);
       const Sample<N> sample(this->Setup, this->Block, this->First[r], this->Cell);
       this->SetFromRow(sample, list);
-      this->WithKind(
-        [&](auto curved, auto normalize) HWY_ATTR {
-          this->template AddSurflets<curved(), normalize()>(sample, list, bits, this->Total[r]);
-        });
+      this->WithKind([&](auto curved, auto normalize) HWY_ATTR
+        { this->template AddSurflets<curved(), normalize()>(sample, list, bits, this->Total[r]); });
     }
   }
 
@@ -1416,7 +1406,7 @@ private:
   WALK_INLINE View<N> GetView(
     const Span<N>& span, const V (&corner)[N], const V (&jitter)[N], float loose) const
   {
-    const Group<N, 2>& group = span.Whole;
+    const Group<N>& group = span.Whole;
     View<N> view;
     V v[N];
     for (int axis = 0; axis < N; ++axis)
@@ -1458,8 +1448,7 @@ private:
         if (this->Setup.Curved)
         {
           view.Step[k][axis] = hn::MulAdd(sag, span.BendStep[k][axis], view.Step[k][axis]);
-          view.Step[k][axis] =
-            hn::MulAdd(hn::Mul(s, sStep), span.Bend[axis], view.Step[k][axis]);
+          view.Step[k][axis] = hn::MulAdd(hn::Mul(s, sStep), span.Bend[axis], view.Step[k][axis]);
         }
       }
     }
@@ -1527,8 +1516,7 @@ private:
       const V width =
         hn::Add(hn::Add(view.Width, looseness), hn::Sqrt(Dot(view.Step[1], view.Step[1])));
       const auto listed = hn::FirstN(DF(), list.Count - i);
-      std::uint64_t bits =
-        ToBits(hn::And(listed, View<N>::IsNear(view.T, view.Step[0], width)));
+      std::uint64_t bits = ToBits(hn::And(listed, View<N>::IsNear(view.T, view.Step[0], width)));
       for (; bits != 0; bits &= bits - 1, ++kept)
       {
         const std::size_t from = i + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);

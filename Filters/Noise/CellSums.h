@@ -95,7 +95,12 @@ public:
     if (steps.allFinite())
     {
       shares.push_back({ point,
-        steps.array().round().max(-double(INT32_MAX)).min(double(INT32_MAX)).matrix().cast<int>() });
+        steps.array()
+          .round()
+          .max(-double(INT32_MAX))
+          .min(double(INT32_MAX))
+          .matrix()
+          .cast<int>() });
     }
   }
 

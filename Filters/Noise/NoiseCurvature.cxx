@@ -90,8 +90,7 @@ private:
 };
 
 /// Gradient of the points [first, first + count) of a cell.
-Matrix3d GetGradient(
-  const CellPoints& cell, std::size_t first, std::size_t count, int dimension)
+Matrix3d GetGradient(const CellPoints& cell, std::size_t first, std::size_t count, int dimension)
 {
   Vector3d meanPlace = Vector3d::Zero();
   Vector3d meanDirection = Vector3d::Zero();
@@ -237,9 +236,9 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
         if (!u.isZero(0.0))
         {
           ReadCell(dataset, id, u, false, ids, cell,
-            [&](vtkIdType point) -> Vector3d
-            {
-              return Eigen::Map<const Eigen::Vector3f>(points->GetPointer(3 * point)).cast<double>();
+            [&](vtkIdType point) -> Vector3d {
+              return Eigen::Map<const Eigen::Vector3f>(points->GetPointer(3 * point))
+                .cast<double>();
             });
           const int dimension = dimensions.Get(dataset->GetCellType(id));
           result = GetGradient(cell, 0, cell.Ids.size(), dimension) * u;
@@ -251,8 +250,8 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
 }
 } // namespace
 
-vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(vtkDataSet* dataset,
-  const steerable::TupleReader<float>& vectors, bool cells, double cellSize)
+vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells, double cellSize)
 {
   return cells ? CurvatureOfCells(dataset, vectors) : CurvatureOfPoints(dataset, vectors, cellSize);
 }
@@ -281,7 +280,9 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
               positions.Read(static_cast<std::size_t>(sample), 1, scratch));
             // As on images, a neighbour without a direction stands for no change.
             const Vector3d direction = GetDirection(vectors, sample);
-            return direction.isZero(0.0) ? u : Vector3d(direction.dot(u) < 0.0 ? -direction : direction);
+            return direction.isZero(0.0)
+              ? u
+              : Vector3d(direction.dot(u) < 0.0 ? -direction : direction);
           };
           Vector3d low;
           Vector3d high;

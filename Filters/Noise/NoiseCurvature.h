@@ -25,8 +25,8 @@ namespace noise
  * mean over its cells. On simplices and parallelepipeds that is what VTK's cells give at their centres.
  * `cellSize`: in world units, of the noise; curvatures are summed in steps of 2^-24 / cellSize.
  */
-vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(vtkDataSet* dataset,
-  const steerable::TupleReader<float>& vectors, bool cells, double cellSize);
+vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells, double cellSize);
 
 /// The same of a structured grid of samples: differences of the neighbours along its axes, as on images.
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions)[3],

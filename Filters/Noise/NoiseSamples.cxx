@@ -125,8 +125,9 @@ void SetMeanOfPoints(vtkUnstructuredGrid* grid, vtkIdType cell, vtkDataArray* ce
 /// Unit normal of the plane through points (a strip's first three), 0 if there is none.
 Eigen::Vector3d GetNormal(vtkDataSet* dataset, int cellType, vtkIdList* ids)
 {
-  const vtkIdType count =
-    cellType == VTK_TRIANGLE_STRIP ? std::min<vtkIdType>(3, ids->GetNumberOfIds()) : ids->GetNumberOfIds();
+  const vtkIdType count = cellType == VTK_TRIANGLE_STRIP
+    ? std::min<vtkIdType>(3, ids->GetNumberOfIds())
+    : ids->GetNumberOfIds();
   // Newell's sum over the edges; a pixel's points are in the order of an image.
   const auto getId = [&](vtkIdType i)
   { return ids->GetId(cellType == VTK_PIXEL && i >= 2 ? 5 - i : i); };
@@ -505,8 +506,8 @@ void Samples::ComputeCurvature(double featureSize)
   }
   else
   {
-    this->Curvature = ComputeStreamlineCurvature(
-      this->DataSet, *this->Field.Vectors, this->Cells, featureSize);
+    this->Curvature =
+      ComputeStreamlineCurvature(this->DataSet, *this->Field.Vectors, this->Cells, featureSize);
   }
   this->CurvatureReader = MakeVectorReader(this->Curvature, WorldAxes, false);
   this->Field.Curvature = this->CurvatureReader.get();

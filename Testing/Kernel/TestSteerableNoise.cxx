@@ -915,12 +915,12 @@ TEST(SteerableNoise, HasTheSameBitsAloneHoweverFarItsNeighboursAre)
       samples.Positions[i] = static_cast<double>(i / 3) * spacing * u[i % 3];
       samples.Curvature[i] = 0.0f;
     }
-    EXPECT_EQ(CountDifferent(SplitNoise<2>(parameters, samples, one),
-                SplitNoise<2>(parameters, samples, {})),
+    EXPECT_EQ(CountDifferent(
+                SplitNoise<2>(parameters, samples, one), SplitNoise<2>(parameters, samples, {})),
       0)
       << spacing;
-    EXPECT_EQ(CountDifferent(SplitNoise<3>(parameters, samples, one),
-                SplitNoise<3>(parameters, samples, {})),
+    EXPECT_EQ(CountDifferent(
+                SplitNoise<3>(parameters, samples, one), SplitNoise<3>(parameters, samples, {})),
       0)
       << spacing;
   }

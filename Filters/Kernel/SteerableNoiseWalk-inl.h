@@ -1371,7 +1371,11 @@ private:
   template <class Work>
   WALK_INLINE void WithKind(Work&& work) const
   {
+#ifdef STEERABLENOISE_INSTRUMENTED
+    constexpr std::true_type straight;
+#else
     constexpr std::bool_constant<Variant> straight; // there variants are not worth more code
+#endif
     this->Setup.Curved ? this->WithSums(work, std::true_type()) : this->WithSums(work, straight);
   }
 

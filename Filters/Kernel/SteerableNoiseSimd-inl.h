@@ -706,7 +706,7 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
   }
 
   const std::int64_t mostRows = setup.SingleCell ? 1 : TileRegisters;
-  const std::int64_t mostColumns = setup.SingleCell ? 256 : PatchColumns;
+  const std::int64_t mostColumns = setup.SingleCell ? CellsColumns : PatchColumns;
   Patch patch;
   for (std::size_t row = rowBegin; row < rowEnd; row += patch.Rows)
   {

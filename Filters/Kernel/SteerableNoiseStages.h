@@ -18,6 +18,8 @@ namespace steerable
 {
 /// Samples that go through the stages together: their arrays stay in the nearest caches.
 constexpr std::size_t BlockSize = 512;
+/// Samples of a row of an image at Quality 0: fewer, since their arrays then stay in the nearest cache.
+constexpr std::size_t CellsColumns = 256;
 /// Registers of samples that share lists of corners where they can; in images one below the other.
 constexpr std::size_t TileRegisters = 8;
 /// Where walks want it, a block of an image is as many rows of this many samples.

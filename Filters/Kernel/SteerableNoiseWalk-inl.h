@@ -1171,6 +1171,8 @@ private:
   {
     Reach<N> reach;
     this->SetApart(reach, r);
+    const Sample<N> sample(this->Setup, this->Block, this->First[r], this->Cell);
+    const IndexAxis axisX = this->GetIndexAxis(reach, 0);
     const IndexAxis axisY = this->GetIndexAxis(reach, 1);
     const V length = hn::Add(reach.Length, Const(this->Setup.JitterRadius));
     V first;
@@ -1178,7 +1180,7 @@ private:
     if constexpr (N == 2)
     {
       this->GetRange(reach, 1, axisY, hn::Neg(length), length, first, last);
-      this->AddRowsApart(reach, r, first, last, 0);
+      this->AddRowsApart(reach, axisX, r, sample, first, last, 0);
     }
     else
     {
@@ -1194,16 +1196,15 @@ private:
           this->Narrow(reach, 2, axisZ, Const(static_cast<float>(z)), low, high);
         }
         this->GetRange(reach, 1, axisY, low, high, first, last);
-        this->AddRowsApart(reach, r, first, last, z);
+        this->AddRowsApart(reach, axisX, r, sample, first, last, z);
       }
     }
   }
 
   /// The corners of the rows from the least of `first` to the greatest of `last`.
-  WALK_INLINE void AddRowsApart(const Reach<N>& reach, std::size_t r, V first, V last, int z)
+  WALK_INLINE void AddRowsApart(const Reach<N>& reach, const IndexAxis& axisX, std::size_t r,
+    const Sample<N>& sample, V first, V last, int z)
   {
-    const Sample<N> sample(this->Setup, this->Block, this->First[r], this->Cell);
-    const IndexAxis axisX = this->GetIndexAxis(reach, 0);
     const auto none = hn::Gt(first, last);
     const int lastY = ToCorner(GreatestLane(hn::IfThenElse(none, Const(-1e9f), last)));
     for (int y = ToCorner(LeastLane(hn::IfThenElse(none, Const(1e9f), first))); y <= lastY; ++y)
@@ -1244,6 +1245,7 @@ private:
       }
     }
   }
+
   // ---- listed corners ---------------------------------------------------------------------------
 
   WALK_INLINE VU HashCorners(const VI (&corner)[N]) const
@@ -1428,17 +1430,7 @@ private:
       }
     }
     const V s = Dot(v, group.U);
-    if constexpr (N == 2)
-    {
-      ToAcross<N>(v, group.U, view.T);
-    }
-    else
-    {
-      for (int axis = 0; axis < N; ++axis)
-      {
-        view.T[axis] = hn::NegMulAdd(s, group.U[axis], v[axis]);
-      }
-    }
+    ToAcross<N>(v, group.U, view.T);
     const V sag = hn::Mul(hn::Mul(s, s), Const(0.5f));
     V steps = hn::Zero(DF());
     for (int k = 0; k < 2; ++k)

@@ -3,6 +3,7 @@
 #include "NoiseCurvature.h"
 
 #include "CellSums.h"
+#include "NoiseThreads.h"
 
 #include "vtkSMPTools.h"
 
@@ -107,21 +108,10 @@ Matrix3d GetGradient(const CellPoints& cell, std::size_t first, std::size_t coun
   return fit.Solve(dimension);
 }
 
-/**
- * How many points of a cell belong together: a strip is as many triangles, a line as many segments, as
- * follow one another.
- */
-std::size_t GetPartSize(int cellType, std::size_t points)
+/// A strip is as many triangles, a line as many segments, as follow one another: their points; else 0.
+std::size_t GetPartSize(int cellType)
 {
-  switch (cellType)
-  {
-    case VTK_TRIANGLE_STRIP:
-      return 3;
-    case VTK_POLY_LINE:
-      return 2;
-    default:
-      return std::max<std::size_t>(points, 2);
-  }
+  return cellType == VTK_TRIANGLE_STRIP ? 3 : cellType == VTK_POLY_LINE ? 2 : 0;
 }
 
 /**
@@ -156,20 +146,12 @@ void ReadCell(vtkDataSet* dataset, vtkIdType id, Vector3d side, bool keepAll, vt
   }
 }
 
-vtkSmartPointer<vtkFloatArray> NewVectors(vtkIdType count)
-{
-  auto array = vtkSmartPointer<vtkFloatArray>::New();
-  array->SetNumberOfComponents(3);
-  array->SetNumberOfTuples(count);
-  return array;
-}
-
 /// Of points, from the cells around them.
 vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, double cellSize)
 {
   const CellDimensions dimensions(dataset);
-  auto curvature = NewVectors(dataset->GetNumberOfPoints());
+  auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfPoints());
   // The noise takes bends up to 1 / cellSize: room for 127 cells of such, and finer than it sees.
   PointSums sums(dataset, curvature, cellSize * (1 << 24));
   sums.AddCells(false,
@@ -182,10 +164,10 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
         return;
       }
       thread_local CellPoints cell;
-      const bool parts = type == VTK_TRIANGLE_STRIP || type == VTK_POLY_LINE;
-      ReadCell(dataset, id, Vector3d::Zero(), parts, ids, cell,
+      const std::size_t part = GetPartSize(type);
+      ReadCell(dataset, id, Vector3d::Zero(), part > 0, ids, cell,
         [&](vtkIdType point) { return GetDirection(vectors, point); });
-      const std::size_t size = GetPartSize(type, cell.Ids.size());
+      const std::size_t size = part > 0 ? part : std::max<std::size_t>(cell.Ids.size(), 2);
       for (std::size_t first = 0; first + size <= cell.Ids.size(); ++first)
       {
         const auto begin = cell.Directions.begin() + static_cast<std::ptrdiff_t>(first);
@@ -210,7 +192,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors)
 {
   const CellDimensions dimensions(dataset);
-  auto points = NewVectors(dataset->GetNumberOfPoints());
+  auto points = NewOutputArray("Directions", 3, dataset->GetNumberOfPoints());
   PointSums sums(dataset, points, DirectionSteps);
   sums.AddCells(true,
     [&](vtkIdType id, vtkIdList* ids, PointSums::Shares& shares)
@@ -223,7 +205,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
       }
     });
   sums.Finish();
-  auto curvature = NewVectors(dataset->GetNumberOfCells());
+  auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfCells());
   vtkSMPTools::For(0, dataset->GetNumberOfCells(), 1024,
     [&](vtkIdType begin, vtkIdType end)
     {
@@ -264,7 +246,7 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
   const vtkIdType count = strides[2] * dimensions[2];
   const auto axes = static_cast<int>(
     std::count_if(dimensions, dimensions + 3, [](int samples) { return samples > 1; }));
-  auto curvature = NewVectors(count);
+  auto curvature = NewOutputArray("Curvature", 3, count);
   vtkSMPTools::For(0, count, 1024,
     [&](vtkIdType begin, vtkIdType end)
     {

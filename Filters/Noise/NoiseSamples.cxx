@@ -355,9 +355,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
   {
     return nullptr;
   }
-  auto normals = vtkSmartPointer<vtkFloatArray>::New();
-  normals->SetNumberOfComponents(3);
-  normals->SetNumberOfTuples(this->GetNumberOfSamples());
+  auto normals = NewOutputArray("Normals", 3, this->GetNumberOfSamples());
   // The dataset's own normals where it has them; their sense does not matter.
   vtkDataSetAttributes* attributes = this->Cells
     ? static_cast<vtkDataSetAttributes*>(this->DataSet->GetCellData())
@@ -442,9 +440,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
   const int v = (slab + 2) % 3;
   const vtkIdType stride[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };
   const vtkIdType pointCount = this->DataSet->GetNumberOfPoints();
-  auto normals = vtkSmartPointer<vtkFloatArray>::New();
-  normals->SetNumberOfComponents(3);
-  normals->SetNumberOfTuples(this->GetNumberOfSamples());
+  auto normals = NewOutputArray("Normals", 3, this->GetNumberOfSamples());
 
   // Through the slab, from one point to its partner on the other side.
   const auto through = [&](vtkIdType point, double normal[3])

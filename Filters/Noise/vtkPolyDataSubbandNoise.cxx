@@ -750,6 +750,15 @@ int vtkPolyDataSubbandNoise::RequestData(
     vtkErrorMacro("ResultArrayName is empty. Give the noise array a name.");
     return 0;
   }
+  // Everything else is clamped when it is set, but NaN passes a clamp.
+  if (std::isnan(this->Wavelength) || std::isnan(this->Anisotropy) ||
+    std::isnan(this->Persistence))
+  {
+    vtkErrorMacro("Wavelength is " << this->Wavelength << ", Anisotropy " << this->Anisotropy
+                                   << ", Persistence " << this->Persistence
+                                   << "; give each a number.");
+    return 0;
+  }
 
   // The output: shallow copies of the input's datasets, so that arrays can be added.
   BlockFinder finder(this, this->GetInputArrayInformation(0));

@@ -888,6 +888,22 @@ TEST(PolyDataSubbandNoise, MissingArrays)
   EXPECT_NE(messages->Text.find("ResultArrayName is empty"), std::string::npos);
 }
 
+TEST(PolyDataSubbandNoise, PropertiesThatAreNaNAreRefused)
+{
+  using Filter = vtkPolyDataSubbandNoise;
+  for (const auto set : { &Filter::SetWavelength, &Filter::SetAnisotropy, &Filter::SetPersistence })
+  {
+    vtkNew<Filter> filter;
+    auto messages = Listen(filter);
+    filter->SetInputData(FlatSheet());
+    filter->SetOctaves(2);
+    (filter.Get()->*set)(NaN);
+    filter->Update();
+    EXPECT_EQ(messages->Errors, 1);
+    EXPECT_NE(messages->Text.find("give each a number"), std::string::npos) << messages->Text;
+  }
+}
+
 TEST(PolyDataSubbandNoise, EmptyAndHostileInput)
 {
   vtkNew<vtkPolyData> empty;

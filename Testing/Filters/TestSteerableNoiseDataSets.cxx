@@ -610,6 +610,7 @@ std::vector<Case> BadInput()
     { "PhaseHuge", [](F f) { f->SetPhase(1e18); } },
     { "PhaseNegative", [](F f) { f->SetPhase(-12.3); } },
     { "PhaseNaN", [=](F f) { f->SetPhase(nan); } },
+    { "TimePeriodNaN", [=](F f) { f->SetTimePeriod(nan); } },
     { "SpeedHuge",
       [](F f)
       {
@@ -636,6 +637,28 @@ std::vector<Case> BadInput()
   }
   add("FeatureSizeTiny", image, Warned, [](F f) { f->SetFeatureSize(1e-9); });
   add("OctavesHuge", image, Warned, [](F f) { f->SetOctaves(1000); });
+  // NaN passes a clamp.
+  const std::pair<const char*, void (vtkSteerableNoiseFilter::*)(double)> numbers[] = {
+    { "FeatureSizeNaN", &vtkSteerableNoiseFilter::SetFeatureSize },
+    { "MinimumEigenvalueNaN", &vtkSteerableNoiseFilter::SetMinimumEigenvalue },
+    { "EigenvalueSumNaN", &vtkSteerableNoiseFilter::SetEigenvalueSum },
+    { "StrengthNaN", &vtkSteerableNoiseFilter::SetStrength },
+    { "ReferenceMagnitudeNaN", &vtkSteerableNoiseFilter::SetReferenceMagnitude },
+    { "DensityNaN", &vtkSteerableNoiseFilter::SetDensity },
+    { "SpeedNaN", &vtkSteerableNoiseFilter::SetSpeed },
+    { "LacunarityNaN", &vtkSteerableNoiseFilter::SetLacunarity },
+    { "GainNaN", &vtkSteerableNoiseFilter::SetGain },
+    { "MaskThresholdNaN", &vtkSteerableNoiseFilter::SetMaskThreshold },
+  };
+  for (const auto& entry : numbers)
+  {
+    add(entry.first, image, Failed,
+      [=](F f)
+      {
+        f->SetStrengthMode(1);
+        (f->*entry.second)(nan);
+      });
+  }
   add("PeriodNegative", image, Failed, [](F f) { f->SetPeriod(-3, 0, 0); });
   add("PeriodHuge", image, Failed, [](F f) { f->SetPeriod(2147483647, 2147483647, 2147483647); });
   add("PeriodSimplicial", image, Failed,

@@ -36,15 +36,16 @@ public:
     const int byte = this->Position < this->Size ? this->Data[this->Position++] : 0;
     return byte % bound;
   }
+  // Zeros, which end every input, give a plain number.
   double Value()
   {
     switch (this->Next(16))
     {
-      case 0:
+      case 15:
         return std::numeric_limits<double>::quiet_NaN();
-      case 1:
+      case 14:
         return std::numeric_limits<double>::infinity();
-      case 2:
+      case 13:
         return std::ldexp(this->Next(256) - 128, 8 * (this->Next(256) - 128));
       default:
         return (this->Next(256) - 128) / 16.0;

@@ -2,6 +2,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Metrics of a block of samples (a part of SteerableNoiseSimd-inl.h, which includes it).
 
+/// 1/|u| less `inverse`, which is rounded, as a share of it: half of 1 - inverse² |u|², in double.
+HWY_INLINE V CorrectionOf(V inverse, const V (&u)[2])
+{
+  constexpr std::size_t half = hn::MaxLanes(DD());
+  HWY_ALIGN float rounded[Lanes];
+  HWY_ALIGN float x[Lanes];
+  HWY_ALIGN float y[Lanes];
+  hn::Store(inverse, DF(), rounded);
+  hn::Store(u[0], DF(), x);
+  hn::Store(u[1], DF(), y);
+  for (std::size_t lane = 0; lane < Lanes; lane += half)
+  {
+    const auto get = [lane](const float* from) HWY_ATTR
+    { return hn::PromoteTo(DD(), hn::Load(DFH(), from + lane)); };
+    const VD length2 = hn::MulAdd(get(x), get(x), hn::Mul(get(y), get(y)));
+    const VD factor = get(rounded);
+    const VD lack = hn::NegMulAdd(hn::Mul(factor, length2), factor, hn::Set(DD(), 1.0));
+    hn::Store(hn::DemoteTo(DFH(), lack), DFH(), rounded + lane);
+  }
+  return hn::Mul(Const(0.5f), hn::Load(DF(), rounded));
+}
+
 /**
  * Unit vectors of `count` tuples of 3 floats, 0 where there is none. In 2D the third component is not
  * looked at. Not if `Bare`: also their lengths, and what stays behind the high parts. Returns whether
@@ -36,14 +58,18 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
     const auto good = hn::And(hn::Gt(length2, Const(1e-30f)), hn::Lt(length2, Const(1e30f)));
     const V norm = hn::Sqrt(length2);
     const V inverse = hn::Div(Const(1.0f), norm);
+    const V correction = !Bare && N == 2 ? CorrectionOf(inverse, { u[0], u[1] }) : hn::Zero(DF());
     for (int axis = 0; axis < N; ++axis)
     {
-      const V component = hn::Mul(u[axis], inverse);
-      hn::StoreU(component, DF(), unit[axis] + i);
+      V component = hn::Mul(u[axis], inverse);
       if (!Bare && N == 2)
       {
-        hn::StoreU(hn::MulSub(u[axis], inverse, HighPart(component)), DF(), low[axis] + i);
+        const V rest = hn::MulAdd(component, correction, hn::MulSub(u[axis], inverse, component));
+        const V product = component;
+        component = hn::Add(product, rest);
+        hn::StoreU(hn::Add(hn::Sub(product, HighPart(component)), rest), DF(), low[axis] + i);
       }
+      hn::StoreU(component, DF(), unit[axis] + i);
     }
     if (!Bare)
     {
@@ -154,15 +180,31 @@ HWY_NOINLINE void MetricsOfDirections(
       hn::StoreU(AtStrength(range.Across, strength), DF(), block.Across + i);
       continue;
     }
-    const V m2 = hn::MulAdd(Load(block.M[0] + i), Load(block.M[0] + i),
-      hn::MulAdd(Load(block.M[1] + i), Load(block.M[1] + i),
-        hn::Mul(Load(block.M[2] + i), Load(block.M[2] + i))));
+    V u[3];
+    V m[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      u[axis] = Load(block.U[axis] + i);
+      m[axis] = Load(block.M[axis] + i);
+    }
+    const V m2 = Dot(m, m);
     const auto onSurface = hn::Gt(m2, Const(0.5f));
     const V across = AtStrength(range.Across, strength);
     hn::StoreU(hn::IfThenElse(onSurface, AtStrength(surfaceAcross, strength), across), DF(),
       block.Across + i);
     hn::StoreU(hn::IfThenElse(onSurface, AtStrength(SurfaceNormalEigenvalue, strength), across),
       DF(), block.Second + i);
+    // Without a surface, or a direction in it, any axis across u will do: u x x or u x y.
+    const auto keeps = hn::And(there, onSurface);
+    const auto byX = hn::Lt(hn::Abs(u[0]), Const(0.7f));
+    const V other[3] = { hn::IfThenElse(byX, zero, hn::Neg(u[2])),
+      hn::IfThenElseZero(byX, u[2]), hn::IfThenElse(byX, hn::Neg(u[1]), u[0]) };
+    const V length = hn::Sqrt(Dot(other, other));
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      hn::StoreU(
+        hn::IfThenElse(keeps, m[axis], hn::Div(other[axis], length)), DF(), block.M[axis] + i);
+    }
   }
 }
 

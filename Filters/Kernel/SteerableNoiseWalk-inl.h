@@ -399,13 +399,15 @@ struct Sample
   V Shift[N];
   V Fraction[N];
   V U[N];
-  V M[N];
   V Bend[N];
   V Along;
   V Across;
-  V Second;
   V Sense;
   V RootAlong;
+  /// Of metrics with a second axis: it, u x m, and its eigenvalue.
+  V M[N];
+  V ThirdAxis[N];
+  V Second;
   /// 2D: the normal n = (-u_y, u_x), also in two parts, see Walk::AddSurflet; what the fraction has of u
   /// and n; and κ/2.
   V Normal[2];
@@ -419,7 +421,6 @@ struct Sample
     const NoiseSetup& setup, const MetricBlock& block, std::size_t i, const VU (&cell)[N])
     : Along(Load((setup.Curved ? block.BentAlong : block.Along) + i))
     , Across(Load((setup.Curved ? block.BentAcross : block.Across) + i))
-    , Second(Across)
     , Sense(Load(block.Sense + i))
     , RootAlong(hn::Sqrt(Along))
   {
@@ -430,14 +431,20 @@ struct Sample
       this->Fraction[axis] = Load(block.Fraction[axis] + i);
       this->U[axis] = Load(block.U[axis] + i);
       this->Bend[axis] = setup.Curved ? Load(block.ClampedBend[axis] + i) : hn::Zero(DF());
-      this->M[axis] = hn::Zero(DF());
     }
-    if (setup.Biaxial)
+    if (N == 3 && setup.Biaxial)
     {
       this->Second = Load((setup.Curved ? block.BentSecond : block.Second) + i);
       for (int axis = 0; axis < N; ++axis)
       {
         this->M[axis] = Load(block.M[axis] + i);
+      }
+      for (int axis = 0; axis < N; ++axis)
+      {
+        const int j = (axis + 1) % N;
+        const int k = (axis + 2) % N;
+        this->ThirdAxis[axis] =
+          hn::MulSub(this->U[j], this->M[k], hn::Mul(this->U[k], this->M[j]));
       }
     }
     if constexpr (N == 2)
@@ -1681,25 +1688,32 @@ private:
       }
       this->Travel(sample, corner, s, sigma);
       ks = hn::Mul(sample.Along, s);
-      across2 = hn::Mul(sample.Across, Dot(t, t));
-      // s is rounded and u has not quite length 1: what t still has of u is large beside it. It does
-      // not change t² but g . t.
-      const V rest = Dot(t, sample.U);
-      slope = hn::MulAdd(hn::NegMulAdd(sample.Across, rest, ks), Dot(sample.U, g),
-        hn::Mul(sample.Across, Dot(t, g)));
-      if constexpr (squares)
-      {
-        slope2 = hn::MulAdd(ks, ks, hn::Mul(sample.Across, across2));
-      }
       if (this->Setup.Biaxial)
       {
-        const V r = Dot(t, sample.M);
-        const V more = hn::Mul(hn::Sub(sample.Second, sample.Across), r);
-        across2 = hn::MulAdd(more, r, across2);
-        slope = hn::MulAdd(more, Dot(sample.M, g), slope);
+        // On axes of its own each part keeps its precision.
+        const V second = Dot(t, sample.M);
+        const V third = Dot(t, sample.ThirdAxis);
+        const V es = hn::Mul(sample.Second, second);
+        const V bt = hn::Mul(sample.Across, third);
+        across2 = hn::MulAdd(bt, third, hn::Mul(es, second));
+        slope = hn::MulAdd(ks, Dot(sample.U, g),
+          hn::MulAdd(bt, Dot(sample.ThirdAxis, g), hn::Mul(es, Dot(sample.M, g))));
         if constexpr (squares)
         {
-          slope2 = hn::MulAdd(hn::Mul(more, hn::Add(sample.Second, sample.Across)), r, slope2);
+          slope2 = hn::MulAdd(ks, ks, hn::MulAdd(bt, bt, hn::Mul(es, es)));
+        }
+      }
+      else
+      {
+        across2 = hn::Mul(sample.Across, Dot(t, t));
+        // s is rounded and u has not quite length 1: what t still has of u is large beside it. It does
+        // not change t² but g . t.
+        const V rest = Dot(t, sample.U);
+        slope = hn::MulAdd(hn::NegMulAdd(sample.Across, rest, ks), Dot(sample.U, g),
+          hn::Mul(sample.Across, Dot(t, g)));
+        if constexpr (squares)
+        {
+          slope2 = hn::MulAdd(ks, ks, hn::Mul(sample.Across, across2));
         }
       }
       q = hn::MulAdd(ks, s, across2);

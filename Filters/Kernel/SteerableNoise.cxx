@@ -6,6 +6,7 @@
 #include "MetricTensor.h"
 #include "SteerableNoiseStages.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>

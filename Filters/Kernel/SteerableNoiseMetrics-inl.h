@@ -2,37 +2,83 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Metrics of a block of samples (a part of SteerableNoiseSimd-inl.h, which includes it).
 
-/// 1/|u| less `inverse`, which is rounded, as a share of it: half of 1 - inverse² |u|², in double.
-HWY_INLINE V CorrectionOf(V inverse, const V (&u)[2])
+HWY_INLINE VD ToDouble(const float* from)
 {
-  constexpr std::size_t half = hn::MaxLanes(DD());
-  HWY_ALIGN float rounded[Lanes];
-  HWY_ALIGN float x[Lanes];
-  HWY_ALIGN float y[Lanes];
-  hn::Store(inverse, DF(), rounded);
-  hn::Store(u[0], DF(), x);
-  hn::Store(u[1], DF(), y);
-  for (std::size_t lane = 0; lane < Lanes; lane += half)
+  return hn::PromoteTo(DD(), hn::LoadU(DFH(), from));
+}
+
+/// a b - c d, rounded once or twice: where a fused product is not had, in double, which holds products of floats.
+HWY_INLINE V DifferenceOfProducts(V a, V b, V c, V d)
+{
+#if HWY_NATIVE_FMA
+  const V product = hn::Mul(c, d);
+  return hn::Add(hn::MulSub(a, b, product), hn::NegMulAdd(c, d, product)); // Kahan
+#else
+  HWY_ALIGN float values[4][Lanes];
+  const V registers[4] = { a, b, c, d };
+  for (int i = 0; i < 4; ++i)
   {
-    const auto get = [lane](const float* from) HWY_ATTR
-    { return hn::PromoteTo(DD(), hn::Load(DFH(), from + lane)); };
-    const VD length2 = hn::MulAdd(get(x), get(x), hn::Mul(get(y), get(y)));
-    const VD factor = get(rounded);
-    const VD lack = hn::NegMulAdd(hn::Mul(factor, length2), factor, hn::Set(DD(), 1.0));
-    hn::Store(hn::DemoteTo(DFH(), lack), DFH(), rounded + lane);
+    hn::Store(registers[i], DF(), values[i]);
   }
-  return hn::Mul(Const(0.5f), hn::Load(DF(), rounded));
+  for (std::size_t lane = 0; lane < Lanes; lane += hn::MaxLanes(DD()))
+  {
+    const VD product = hn::Mul(ToDouble(values[2] + lane), ToDouble(values[3] + lane));
+    const VD difference =
+      hn::MulSub(ToDouble(values[0] + lane), ToDouble(values[1] + lane), product);
+    hn::Store(hn::DemoteTo(DFH(), difference), DFH(), values[0] + lane);
+  }
+  return hn::Load(DF(), values[0]);
+#endif
 }
 
 /**
- * Unit vectors of `count` tuples of 3 floats, 0 where there is none. In 2D the third component is not
- * looked at. Not if `Bare`: also their lengths, and what stays behind the high parts. Returns whether
- * all of them have a direction beyond doubt.
+ * v times 1/|v|, which is known up to rounding: the nearest floats, and what they lack. In double, with
+ * one step of Newton: a length that is off shows as much as an eigenvalue that is.
  */
-template <int N, bool Bare>
-HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* const (&unit)[3],
-  float* length = nullptr, float* const* low = nullptr)
+HWY_INLINE void SplitUnit(
+  const V (&v)[3], V inverse, float* const (&unit)[2], float* const (&rest)[2])
 {
+  HWY_ALIGN float values[3][Lanes];
+  hn::Store(v[0], DF(), values[0]);
+  hn::Store(v[1], DF(), values[1]);
+  hn::Store(inverse, DF(), values[2]);
+  for (std::size_t lane = 0; lane < Lanes; lane += hn::MaxLanes(DD()))
+  {
+    const VD in[2] = { ToDouble(values[0] + lane), ToDouble(values[1] + lane) };
+    const VD rounded = ToDouble(values[2] + lane);
+    const VD length2 = hn::MulAdd(in[0], in[0], hn::Mul(in[1], in[1]));
+    const VD lack = hn::NegMulAdd(hn::Mul(rounded, length2), rounded, hn::Set(DD(), 1.0));
+    const VD factor = hn::MulAdd(hn::Mul(rounded, hn::Set(DD(), 0.5)), lack, rounded);
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      const VD exact = hn::Mul(in[axis], factor);
+      const auto nearest = hn::DemoteTo(DFH(), exact);
+      hn::StoreU(nearest, DFH(), unit[axis] + lane);
+      hn::StoreU(hn::DemoteTo(DFH(), hn::Sub(exact, hn::PromoteTo(DD(), nearest))), DFH(),
+        rest[axis] + lane);
+    }
+  }
+}
+
+/// What becomes of vectors.
+enum class Wanted
+{
+  Units,
+  /// With lengths, and in 2D what the units lack.
+  Metrics,
+  /// 2D: the vectors as they are, unless they are too long or too short to be squared, and 1/length.
+  Inverses
+};
+
+/**
+ * Directions of `count` tuples of 3 floats, 0 where there is none. In 2D the third component is not looked
+ * at. Returns whether all of them have a direction beyond doubt.
+ */
+template <int N, Wanted What>
+HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* const (&unit)[3],
+  float* length = nullptr, float* const* rest = nullptr)
+{
+  constexpr bool metrics = What == Wanted::Metrics;
   bool all = true;
   HWY_ALIGN float tail[3 * Lanes];
   for (std::size_t i = 0; i < count; i += Lanes)
@@ -58,20 +104,24 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
     const auto good = hn::And(hn::Gt(length2, Const(1e-30f)), hn::Lt(length2, Const(1e30f)));
     const V norm = hn::Sqrt(length2);
     const V inverse = hn::Div(Const(1.0f), norm);
-    const V correction = !Bare && N == 2 ? CorrectionOf(inverse, { u[0], u[1] }) : hn::Zero(DF());
-    for (int axis = 0; axis < N; ++axis)
+    if constexpr (What == Wanted::Inverses)
     {
-      V component = hn::Mul(u[axis], inverse);
-      if (!Bare && N == 2)
-      {
-        const V rest = hn::MulAdd(component, correction, hn::MulSub(u[axis], inverse, component));
-        const V product = component;
-        component = hn::Add(product, rest);
-        hn::StoreU(hn::Add(hn::Sub(product, HighPart(component)), rest), DF(), low[axis] + i);
-      }
-      hn::StoreU(component, DF(), unit[axis] + i);
+      hn::StoreU(u[0], DF(), unit[0] + i);
+      hn::StoreU(u[1], DF(), unit[1] + i);
+      hn::StoreU(inverse, DF(), unit[2] + i);
     }
-    if (!Bare)
+    else if constexpr (metrics && N == 2)
+    {
+      SplitUnit(u, inverse, { unit[0] + i, unit[1] + i }, { rest[0] + i, rest[1] + i });
+    }
+    else
+    {
+      for (int axis = 0; axis < N; ++axis)
+      {
+        hn::StoreU(hn::Mul(u[axis], inverse), DF(), unit[axis] + i);
+      }
+    }
+    if (metrics)
     {
       hn::StoreU(norm, DF(), length + i);
     }
@@ -96,19 +146,36 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
         for (int axis = 0; axis < N; ++axis)
         {
           unit[axis][i + lane] = static_cast<float>(vector[axis]);
-          if (!Bare && N == 2)
+          if (metrics && N == 2)
           {
-            low[axis][i + lane] = LowPart(vector[axis]);
+            rest[axis][i + lane] = RestOf(vector[axis]);
           }
         }
-        if (!Bare)
+        if (metrics)
         {
           length[i + lane] = any ? static_cast<float>(std::sqrt(norm2)) : 0.0f;
+        }
+        if (What == Wanted::Inverses)
+        {
+          unit[2][i + lane] = any ? 1.0f : 0.0f;
         }
       }
     }
   }
   return all;
+}
+
+/// Splits u of a sample with a second axis into floats and what they lack on the axes across.
+inline void SetAxes(const Vector<3>& u, const Vector<3>& m, std::size_t to, MetricBlock& block)
+{
+  const Vector<3> rest = u - u.cast<float>().cast<double>();
+  block.URest[0][to] = static_cast<float>(rest.dot(m));
+  block.URest[1][to] = static_cast<float>(rest.dot(u.cross(m)));
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    block.U[axis][to] = static_cast<float>(u[axis]);
+    block.M[axis][to] = static_cast<float>(m[axis]);
+  }
 }
 
 /**
@@ -137,11 +204,7 @@ void ProjectOnSurface(
       const double inPlane = u.norm();
       u = inPlane > 1e-5 ? Vector<3>(u / inPlane) : Vector<3>::Zero();
     }
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      block.U[axis][to] = static_cast<float>(u[axis]);
-      block.M[axis][to] = static_cast<float>(m[axis]);
-    }
+    SetAxes(u, m, to, block);
   }
 }
 
@@ -197,8 +260,8 @@ HWY_NOINLINE void MetricsOfDirections(
     // Without a surface, or a direction in it, any axis across u will do: u x x or u x y.
     const auto keeps = hn::And(there, onSurface);
     const auto byX = hn::Lt(hn::Abs(u[0]), Const(0.7f));
-    const V other[3] = { hn::IfThenElse(byX, zero, hn::Neg(u[2])),
-      hn::IfThenElseZero(byX, u[2]), hn::IfThenElse(byX, hn::Neg(u[1]), u[0]) };
+    const V other[3] = { hn::IfThenElse(byX, zero, hn::Neg(u[2])), hn::IfThenElseZero(byX, u[2]),
+      hn::IfThenElse(byX, hn::Neg(u[1]), u[0]) };
     const V length = hn::Sqrt(Dot(other, other));
     for (int axis = 0; axis < 3; ++axis)
     {
@@ -208,38 +271,57 @@ HWY_NOINLINE void MetricsOfDirections(
   }
 }
 
-/// Adds u_axis ∂u/∂axis to the bend, the neighbours turned to the side of the middle one.
+/**
+ * Adds u_axis ∂u/∂axis to the bend, the neighbours turned to the side of the middle one; a neighbour without a
+ * direction stands for no change. Rows are unit vectors, in 2D vectors and 1/length.
+ */
 template <int N>
 HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t at, std::size_t count, int axis,
-  const std::array<const float*, 3>& before, const std::array<const float*, 3>& after,
-  const float* scale, bool perLane)
+  const std::array<const float*, 3>& own, const std::array<const float*, 3>& before,
+  const std::array<const float*, 3>& after, const float* scale, bool perLane)
 {
+  const V signBit = hn::BitCast(DF(), hn::Set(DU(), 0x80000000u));
   for (std::size_t i = 0; i < count; i += Lanes)
   {
-    const std::size_t to = at + i;
     V u[N];
     V a[N];
     V c[N];
     for (int k = 0; k < N; ++k)
     {
-      u[k] = Load(block.U[k] + to);
+      u[k] = Load(own[k] + i);
       a[k] = Load(before[k] + i);
       c[k] = Load(after[k] + i);
     }
-    const V zero = Const(0.0f);
+    const V signA = hn::And(Dot(u, a), signBit);
+    const V signC = hn::And(Dot(u, c), signBit);
     const V factor = hn::Mul(u[axis], perLane ? Load(scale + i) : Const(*scale));
-    const V signA = Dot(u, a);
-    const V signC = Dot(u, c);
-    // A neighbour without a direction stands for no change.
-    const auto noneA = hn::Eq(Dot(a, a), zero);
-    const auto noneC = hn::Eq(Dot(c, c), zero);
-    const V mask = hn::BitCast(DF(), hn::Set(DU(), 0x80000000u));
+    V change[N];
+    if constexpr (N == 2)
+    {
+      // Only the part across u counts. Differences of unit vectors would lose it to rounding where samples
+      // are close together.
+      const V acrossA = hn::Xor(DifferenceOfProducts(u[0], a[1], u[1], a[0]), signA);
+      const V acrossC = hn::Xor(DifferenceOfProducts(u[0], c[1], u[1], c[0]), signC);
+      const V inverse = Load(own[2] + i);
+      const V turn = hn::MulSub(acrossC, Load(after[2] + i), hn::Mul(acrossA, Load(before[2] + i)));
+      const V scaled = hn::Mul(turn, hn::Mul(hn::Mul(inverse, inverse), inverse));
+      change[0] = hn::Neg(hn::Mul(scaled, u[1]));
+      change[1] = hn::Mul(scaled, u[0]);
+    }
+    else
+    {
+      const auto noneA = hn::Eq(Dot(a, a), hn::Zero(DF()));
+      const auto noneC = hn::Eq(Dot(c, c), hn::Zero(DF()));
+      for (int k = 0; k < N; ++k)
+      {
+        change[k] = hn::Sub(hn::IfThenElse(noneC, u[k], hn::Xor(c[k], signC)),
+          hn::IfThenElse(noneA, u[k], hn::Xor(a[k], signA)));
+      }
+    }
     for (int k = 0; k < N; ++k)
     {
-      const V fromA = hn::IfThenElse(noneA, u[k], hn::Xor(a[k], hn::And(signA, mask)));
-      const V fromC = hn::IfThenElse(noneC, u[k], hn::Xor(c[k], hn::And(signC, mask)));
-      const V sum = hn::MulAdd(factor, hn::Sub(fromC, fromA), Load(block.Bend[k] + to));
-      hn::StoreU(sum, DF(), block.Bend[k] + to);
+      float* const bend = block.Bend[k] + at + i;
+      hn::StoreU(hn::MulAdd(factor, change[k], Load(bend)), DF(), bend);
     }
   }
 }
@@ -271,7 +353,7 @@ void PadTail(MetricBlock& block, std::size_t end)
 {
   const auto pad = [end](auto* array) { std::fill_n(array + end, Lanes, array[end - 1]); };
   for (float* array : { block.U[0], block.U[1], block.U[2], block.M[0], block.M[1], block.M[2],
-         block.ULow[0], block.ULow[1], block.Bend[0], block.Bend[1], block.Bend[2], block.Along,
+         block.URest[0], block.URest[1], block.Bend[0], block.Bend[1], block.Bend[2], block.Along,
          block.Across, block.Second, block.Sense })
   {
     pad(array);
@@ -288,13 +370,16 @@ void MetricsOfTensors(const NoiseSetup& setup, const float* tuples, std::size_t 
     const std::size_t to = at + i;
     const Matrix<N> tensor = TensorOf<N>(tuples + 6 * i);
     const AxialMetric<N> metric = MetricFromTensor<N>(setup.Parameters, tensor);
-    for (int axis = 0; axis < N; ++axis)
+    if constexpr (N == 3)
     {
-      block.U[axis][to] = static_cast<float>(metric.Direction[axis]);
-      block.M[axis][to] = static_cast<float>(metric.SecondAxis[axis]);
-      if constexpr (N == 2)
+      SetAxes(metric.Direction, metric.SecondAxis, to, block);
+    }
+    else
+    {
+      for (int axis = 0; axis < N; ++axis)
       {
-        block.ULow[axis][to] = LowPart(metric.Direction[axis]);
+        block.U[axis][to] = static_cast<float>(metric.Direction[axis]);
+        block.URest[axis][to] = RestOf(metric.Direction[axis]);
       }
     }
     block.Along[to] = static_cast<float>(metric.Along);
@@ -310,14 +395,15 @@ void MetricsOfTensors(const NoiseSetup& setup, const float* tuples, std::size_t 
   }
 }
 
-/// Unit vectors along the flow for samples [first, first + count): 0 where there is none.
+/// Directions along the flow of samples [first, first + count), as AddDerivative takes them; 0 where there is none.
 template <int N>
 void Directions(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t count,
-  MetricBlock& block, float* const (&unit)[3])
+  MetricBlock& block, float* const (&row)[3])
 {
   if (field.Vectors)
   {
-    UnitVectors<N, true>(field.Vectors->Read(first, count, block.Tuples), count, unit);
+    constexpr Wanted wanted = N == 2 ? Wanted::Inverses : Wanted::Units;
+    UnitVectors<N, wanted>(field.Vectors->Read(first, count, block.Tuples), count, row);
     return;
   }
   const float* tuples = field.Tensors->Read(first, count, block.Tuples);
@@ -325,9 +411,11 @@ void Directions(const NoiseSetup& setup, const Field& field, std::size_t first, 
   {
     const AxialMetric<N> metric =
       MetricFromTensor<N>(setup.Parameters, TensorOf<N>(tuples + 6 * i));
+    const Vector<N> direction = metric.Degenerate ? Vector<N>::Zero() : metric.Direction;
+    row[2][i] = metric.Degenerate ? 0.0f : 1.0f;
     for (int axis = 0; axis < N; ++axis)
     {
-      unit[axis][i] = metric.Degenerate ? 0.0f : static_cast<float>(metric.Direction[axis]);
+      row[axis][i] = static_cast<float>(direction[axis]);
     }
   }
 }
@@ -346,12 +434,12 @@ bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
   }
   float* const unit[3] = { block.U[0] + at, block.U[1] + at, block.U[2] + at };
   const float* vectors = field.Vectors->Read(first, count, block.Tuples);
-  if (setup.Uniform && UnitVectors<N, true>(vectors, count, unit))
+  if (setup.Uniform && UnitVectors<N, Wanted::Units>(vectors, count, unit))
   {
     return true;
   }
-  float* const low[2] = { block.ULow[0] + at, block.ULow[1] + at };
-  UnitVectors<N, false>(vectors, count, unit, block.Length + at, low);
+  float* const rest[2] = { block.URest[0] + at, block.URest[1] + at };
+  UnitVectors<N, Wanted::Metrics>(vectors, count, unit, block.Length + at, rest);
   if (field.Normals)
   {
     const float* normals = field.Normals->Read(first, count, block.Tuples + 3 * BlockRoom);

@@ -46,10 +46,11 @@ HWY_INLINE V Dot(const V (&a)[N], const V (&b)[N])
   return sum;
 }
 
-/// The 16 leading bits of a float: a product with a number of 8 bits is exact.
-HWY_INLINE V HighPart(V v)
+/// The nearest multiple of 2^(-23) `size`, a power of two: sums of products of few digits are exact.
+HWY_INLINE V RoundTo(V v, float size)
 {
-  return hn::And(v, hn::BitCast(DF(), hn::Set(DU(), HighPartMask)));
+  const V shift = Const(1.5f * size);
+  return hn::Sub(hn::Add(v, shift), shift);
 }
 
 /// Bounds of loops over corners, whatever the number is.
@@ -509,7 +510,7 @@ struct Patch
   static std::size_t At(std::size_t row) { return row * PatchStride; }
 };
 
-/// Directions u of a patch and their bend, without the parts of it that BendMetrics removes.
+/// Bend of a patch, without the parts of it that BendMetrics removes.
 template <int N>
 void PatchCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field& field,
   const std::vector<float>& scaleX, const Patch& patch, MetricBlock& block)
@@ -528,7 +529,7 @@ void PatchCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field&
     float* to[3];
     for (int axis = 0; axis < 3; ++axis)
     {
-      to[axis] = block.UnitRows[slot][axis] + stride - before;
+      to[axis] = block.DirectionRows[slot][axis] + stride - before;
     }
     const auto first = static_cast<std::size_t>((k * size[1] + j) * size[0] + i0 - before);
     Directions<N>(setup, field, first, static_cast<std::size_t>(columns + before + after), block,
@@ -536,27 +537,26 @@ void PatchCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field&
   };
   const auto getRow = [&](std::int64_t slot, std::int64_t shift)
   {
-    const auto& unit = block.UnitRows[slot];
-    return std::array<const float*, 3>{ unit[0] + stride + shift, unit[1] + stride + shift,
-      unit[2] + stride + shift };
+    const auto& row = block.DirectionRows[slot];
+    return std::array<const float*, 3>{ row[0] + stride + shift, row[1] + stride + shift,
+      row[2] + stride + shift };
   };
 
   for (std::int64_t r = 0; r < rows; ++r)
   {
     const std::size_t at = Patch::At(r);
     readRow(r, patch.First[1] + r, patch.First[2], left, right);
-    for (int axis = 0; axis < N; ++axis)
+    for (int axis = 0; axis < 3; ++axis)
     {
-      float* const row = block.UnitRows[r][axis] + stride;
+      float* const row = block.DirectionRows[r][axis] + stride;
       std::fill(row - stride, row - left, row[-left]);
       std::fill(row + columns + right, row + columns + stride, row[columns + right - 1]);
-      std::copy(row, row + columns, block.U[axis] + at);
       std::fill_n(block.Bend[axis] + at, patch.Columns + Lanes, 0.0f);
     }
     if (size[0] > 1)
     {
-      AddDerivative<N>(block, at, patch.Columns, 0, getRow(r, -stride), getRow(r, stride),
-        scaleX.data() + i0, true);
+      AddDerivative<N>(block, at, patch.Columns, 0, getRow(r, 0), getRow(r, -stride),
+        getRow(r, stride), scaleX.data() + i0, true);
     }
   }
   for (int axis = 1; axis < N; ++axis)
@@ -583,7 +583,7 @@ void PatchCurvature(const NoiseSetup& setup, const ImageGrid& grid, const Field&
         const std::int64_t before = find(low[1], low[2], rows);
         const std::int64_t after = find(high[1], high[2], rows + 1);
         const float scale = InCells(1.0 / (static_cast<double>(span) * grid.Spacing[axis]), setup);
-        AddDerivative<N>(block, Patch::At(r), patch.Columns, axis, getRow(before, 0),
+        AddDerivative<N>(block, Patch::At(r), patch.Columns, axis, getRow(r, 0), getRow(before, 0),
           getRow(after, 0), &scale, false);
       }
     }

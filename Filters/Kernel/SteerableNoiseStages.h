@@ -11,7 +11,6 @@
 #include "MetricTensor.h"
 #include "SteerableNoise.h"
 
-#include <cstring>
 #include <vector>
 
 namespace steerable
@@ -33,19 +32,10 @@ constexpr std::size_t RowRoom = PatchColumns + 2 * ImageGrid::MaximumStride + 32
 /// Places beyond this many cells, and those that are not finite, count as 0: 2^50.
 constexpr double FarthestCell = 1125899906842624.0;
 
-/// Keeps the sign, the exponent and 16 leading bits of a float.
-constexpr std::uint32_t HighPartMask = 0xFFFFFF00u;
-
-/// What a number has beyond the high part of the nearest float.
-inline float LowPart(double value)
+/// What the nearest float lacks.
+inline float RestOf(double value)
 {
-  const auto nearest = static_cast<float>(value);
-  std::uint32_t bits;
-  std::memcpy(&bits, &nearest, sizeof(bits));
-  bits &= HighPartMask;
-  float high;
-  std::memcpy(&high, &bits, sizeof(high));
-  return static_cast<float>(value - high);
+  return static_cast<float>(value - static_cast<float>(value));
 }
 
 /// One octave: everything that is constant over all samples.
@@ -97,8 +87,8 @@ struct NoiseSetup
 struct MetricBlock
 {
   alignas(64) float U[3][BlockRoom];
-  /// u less its high part (2D), see LowPart.
-  alignas(64) float ULow[2][BlockRoom];
+  /// What u as floats lacks: in 2D its components, with a second axis its parts on m and u x m.
+  alignas(64) float URest[2][BlockRoom];
   alignas(64) float M[3][BlockRoom];
   alignas(64) float Along[BlockRoom];
   alignas(64) float Across[BlockRoom];
@@ -118,10 +108,11 @@ struct MetricBlock
   /// Places of the samples in the lattice: cells and fractions.
   alignas(64) std::uint32_t Cell[3][BlockRoom];
   alignas(64) float Fraction[3][BlockRoom];
-  /// Room for tuples that the host converts, and for the unit vectors of a patch and of two more rows.
+  /// Room for tuples that the host converts, and for the directions of a patch and of two more rows: unit
+  /// vectors, in 2D vectors and 1/length.
   alignas(64) float Tuples[6 * BlockRoom];
   alignas(64) double Positions[3 * BlockRoom];
-  alignas(64) float UnitRows[TileRegisters + 2][3][RowRoom];
+  alignas(64) float DirectionRows[TileRegisters + 2][3][RowRoom];
 };
 } // namespace steerable
 

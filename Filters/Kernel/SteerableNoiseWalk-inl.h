@@ -404,17 +404,19 @@ struct Sample
   V Across;
   V Sense;
   V RootAlong;
-  /// Of metrics with a second axis: it, u x m, and its eigenvalue.
+  /// Of metrics with a second axis: it, u x m, what u lacks on them, and the eigenvalue.
   V M[N];
   V ThirdAxis[N];
+  V Rest[2];
   V Second;
   /// 2D: the normal n = (-u_y, u_x), also in two parts, see Walk::AddSurflet; what the fraction has of u
-  /// and n; and κ/2.
+  /// and, in two parts, of n; and κ/2.
   V Normal[2];
   V HighNormal[2];
   V LowNormal[2];
   V AlongFraction;
-  V AcrossFraction;
+  V HighAcross;
+  V LowAcross;
   V HalfBend;
 
   WALK_INLINE Sample(
@@ -443,24 +445,31 @@ struct Sample
       {
         const int j = (axis + 1) % N;
         const int k = (axis + 2) % N;
-        this->ThirdAxis[axis] =
-          hn::MulSub(this->U[j], this->M[k], hn::Mul(this->U[k], this->M[j]));
+        this->ThirdAxis[axis] = hn::MulSub(this->U[j], this->M[k], hn::Mul(this->U[k], this->M[j]));
       }
+      this->Rest[0] = Load(block.URest[0] + i);
+      this->Rest[1] = Load(block.URest[1] + i);
     }
     if constexpr (N == 2)
     {
       this->Normal[0] = hn::Neg(this->U[1]);
       this->Normal[1] = this->U[0];
-      this->LowNormal[0] = hn::Neg(Load(block.ULow[1] + i));
-      this->LowNormal[1] = Load(block.ULow[0] + i);
+      this->LowNormal[0] = hn::Neg(Load(block.URest[1] + i));
+      this->LowNormal[1] = Load(block.URest[0] + i);
+      V high[2];
+      V low[2];
       for (int axis = 0; axis < 2; ++axis)
       {
-        this->HighNormal[axis] = HighPart(this->Normal[axis]);
+        const V normal = this->Normal[axis];
+        this->HighNormal[axis] = RoundTo(normal, 256.0f);
+        this->LowNormal[axis] =
+          hn::Add(hn::Sub(normal, this->HighNormal[axis]), this->LowNormal[axis]);
+        high[axis] = RoundTo(this->Fraction[axis], 32768.0f);
+        low[axis] = hn::Sub(this->Fraction[axis], high[axis]);
       }
       this->AlongFraction = Dot(this->U, this->Fraction);
-      const V product = hn::Mul(this->Normal[0], this->Fraction[0]);
-      this->AcrossFraction = hn::Add(hn::MulAdd(this->Normal[1], this->Fraction[1], product),
-        hn::MulSub(this->Normal[0], this->Fraction[0], product));
+      this->HighAcross = Dot(this->HighNormal, high);
+      this->LowAcross = hn::Add(Dot(this->HighNormal, low), Dot(this->LowNormal, this->Fraction));
       this->HalfBend = hn::Mul(Const(0.5f), Dot(this->Normal, this->Bend));
     }
   }
@@ -1646,14 +1655,23 @@ private:
       }
       else
       {
-        // n . v for a far corner is a small difference of large products. The high parts of n have
-        // 16 bits, so their products with whole offsets and the difference are exact.
-        s = hn::MulAdd(
-          sample.U[0], offset[0], hn::MulSub(sample.U[1], offset[1], sample.AlongFraction));
+        // n . v for a far corner is a small difference of large products. Of the high parts of n and the
+        // fraction products and the difference are exact. Where streamlines bend s² is a part of it.
+        const V(&high)[2] = sample.HighNormal;
+        const V(&low)[2] = sample.LowNormal;
+        if constexpr (Curved)
+        {
+          s = hn::Add(hn::MulSub(high[1], offset[0], hn::Mul(high[0], offset[1])),
+            hn::MulSub(low[1], offset[0], hn::MulAdd(low[0], offset[1], sample.AlongFraction)));
+        }
+        else
+        {
+          s = hn::MulAdd(
+            sample.U[0], offset[0], hn::MulSub(sample.U[1], offset[1], sample.AlongFraction));
+        }
         t = hn::Add(
-          hn::MulAdd(sample.HighNormal[0], offset[0], hn::Mul(sample.HighNormal[1], offset[1])),
-          hn::MulAdd(sample.LowNormal[0], offset[0],
-            hn::MulSub(sample.LowNormal[1], offset[1], sample.AcrossFraction)));
+          hn::Sub(hn::MulAdd(high[0], offset[0], hn::Mul(high[1], offset[1])), sample.HighAcross),
+          hn::MulAdd(low[0], offset[0], hn::MulSub(low[1], offset[1], sample.LowAcross)));
       }
       if constexpr (Curved)
       {
@@ -1691,8 +1709,8 @@ private:
       if (this->Setup.Biaxial)
       {
         // On axes of its own each part keeps its precision.
-        const V second = Dot(t, sample.M);
-        const V third = Dot(t, sample.ThirdAxis);
+        const V second = hn::NegMulAdd(s, sample.Rest[0], Dot(t, sample.M));
+        const V third = hn::NegMulAdd(s, sample.Rest[1], Dot(t, sample.ThirdAxis));
         const V es = hn::Mul(sample.Second, second);
         const V bt = hn::Mul(sample.Across, third);
         across2 = hn::MulAdd(bt, third, hn::Mul(es, second));

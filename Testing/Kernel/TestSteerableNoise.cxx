@@ -21,13 +21,13 @@ using namespace steerable::testing;
 
 namespace
 {
-/// Absolute: what the raw sum keeps everywhere, and unit variance for vectors in 3D without curvature.
+/// Absolute, for noise of unit variance as for the raw sum.
 constexpr double Bound = 2e-6;
-/**
- * Dividing by √(variance + 1e-3) magnifies what float rounds off up to 30 times where all surflets are
- * weak. The largest of 2000 samples at every level is 3.5e-6 in 2D and 5.1e-6 on surfaces in 3D.
- */
-constexpr double MagnifiedBound = 6e-6;
+/// Levels without fused products round each of them: on bent surfaces that takes a little more.
+double BoundAt(std::int64_t target, double bound)
+{
+  return target == HWY_SSE4 || target == HWY_SCALAR || target == HWY_EMU128 ? 1.1 * bound : bound;
+}
 
 const char* NameOf(Steering steering)
 {
@@ -63,7 +63,7 @@ public:
 /// Compares every SIMD level with the reference, which is evaluated once.
 template <int N>
 void ExpectReference(const std::string& family, const NoiseParameters& parameters,
-  const RandomSamples& samples, Steering steering, double bound = MagnifiedBound)
+  const RandomSamples& samples, Steering steering, double bound = Bound)
 {
   const std::vector<double> slow = SlowNoise<N>(parameters, samples, steering);
   std::vector<float> best;
@@ -72,16 +72,18 @@ void ExpectReference(const std::string& family, const NoiseParameters& parameter
     const SimdLevel level(target);
     const std::vector<float> fast = FastNoise<N>(parameters, samples, steering);
     const double difference = LargestDifference(fast, slow);
-    EXPECT_LE(difference, bound) << family << ": " << N << "D, Quality " << parameters.Quality
-                                 << ", " << NameOf(steering) << ", " << hwy::TargetName(target);
+    EXPECT_LE(difference, BoundAt(target, bound))
+      << family << ": " << N << "D, Quality " << parameters.Quality << ", " << NameOf(steering)
+      << ", " << hwy::TargetName(target);
     DifferenceTable::Add(family, difference);
     best = best.empty() ? fast : best;
-    EXPECT_LE(LargestDifference(fast, best), bound) << family << ", " << hwy::TargetName(target);
+    EXPECT_LE(LargestDifference(fast, best), BoundAt(target, bound))
+      << family << ", " << hwy::TargetName(target);
   }
 }
 
 template <int N>
-void ExpectReferenceAtAllQualities(Normalization normalization, double bound)
+void ExpectReferenceAtAllQualities(Normalization normalization, double bound = Bound)
 {
   for (int quality : { 0, 1, 2, 4, 8 })
   {
@@ -106,10 +108,8 @@ void ExpectReferenceAtAllQualities(Normalization normalization, double bound)
               : normalization == Normalization::None ? "None "
                                                      : "WeightSum ") +
           std::to_string(quality) + " " + NameOf(steering) + (curvature > 0.0 ? " curved" : "");
-        const bool magnified =
-          unit && (N == 2 || steering != Steering::Vectors || parameters.FollowCurvature);
         ExpectReference<N>(family, parameters, RandomSamples(count, 1000.0, curvature, 1 + quality),
-          steering, magnified ? MagnifiedBound : bound);
+          steering, bound);
       }
     }
   }
@@ -119,8 +119,8 @@ void ExpectReferenceAtAllQualities(Normalization normalization, double bound)
  * Variants reach farther, fall off faster or leave places with hardly a surflet, whose noise is divided
  * by no more than the root of 1e-3: rounding shows more than with the defaults.
  */
-constexpr double VariantBound = MagnifiedBound;
-constexpr double LooseBound = 1.5e-5;
+constexpr double VariantBound = 4e-6;
+constexpr double LooseBound = 7e-6;
 
 /// A change of the defaults, and what it may cost in precision.
 struct Variant
@@ -428,7 +428,7 @@ std::vector<double> SlowImage(
 
 template <int N>
 void ExpectReferenceOfImages(const NoiseParameters& parameters, const ImageGrid& grid,
-  const VectorFunction& function, const std::string& family, double bound = MagnifiedBound)
+  const VectorFunction& function, const std::string& family, double bound = Bound)
 {
   const std::vector<float> vectors = SampleVectors(grid, function);
   const std::vector<double> slow = SlowImage<N>(parameters, grid, vectors);
@@ -436,7 +436,7 @@ void ExpectReferenceOfImages(const NoiseParameters& parameters, const ImageGrid&
   {
     const SimdLevel level(target);
     const double difference = LargestDifference(ImageNoise(parameters, N, grid, vectors), slow);
-    EXPECT_LE(difference, bound) << family << ", " << hwy::TargetName(target);
+    EXPECT_LE(difference, BoundAt(target, bound)) << family << ", " << hwy::TargetName(target);
     DifferenceTable::Add(family, difference);
   }
 }
@@ -631,14 +631,14 @@ CornerCounts CountCorners(const NoiseParameters& parameters)
 
 TEST(SteerableNoise, EqualsTheReferenceInThePlane)
 {
-  ExpectReferenceAtAllQualities<2>(Normalization::UnitVariance, Bound);
-  ExpectReferenceAtAllQualities<2>(Normalization::None, Bound);
+  ExpectReferenceAtAllQualities<2>(Normalization::UnitVariance);
+  ExpectReferenceAtAllQualities<2>(Normalization::None);
 }
 
 TEST(SteerableNoise, EqualsTheReferenceInSpace)
 {
-  ExpectReferenceAtAllQualities<3>(Normalization::UnitVariance, Bound);
-  ExpectReferenceAtAllQualities<3>(Normalization::None, Bound);
+  ExpectReferenceAtAllQualities<3>(Normalization::UnitVariance);
+  ExpectReferenceAtAllQualities<3>(Normalization::None);
 }
 
 TEST(SteerableNoise, EqualsTheReferenceDividedByWeights)

@@ -96,13 +96,16 @@ public:
     this->Lane = hn::Sub(cells[0], hn::Set(DU(), first));
   }
   HWY_INLINE void SelectRow(int oy, int oz) { this->Row = this->Rows[oy + 2 * oz] + this->First; }
-  HWY_INLINE void GetGradient(int ox, V (&g)[N]) const
+  /// g . v of the corner at this offset in the row.
+  HWY_INLINE V GetSlope(int ox, const V (&v)[N]) const
   {
+    V g[N];
     const auto lane = hn::IndicesFromVec(DF(), this->Lane);
     for (int axis = 0; axis < N; ++axis)
     {
       g[axis] = hn::TableLookupLanes(Load(this->Row + axis * this->Stride + ox), lane);
     }
+    return Dot(g, v);
   }
 
 private:
@@ -147,9 +150,9 @@ public:
   {
     this->Row = N == 3 ? hn::Xor(this->Hash[1][oy], this->Hash[N - 1][oz]) : this->Hash[1][oy];
   }
-  HWY_INLINE void GetGradient(int ox, V (&g)[N]) const
+  HWY_INLINE V GetSlope(int ox, const V (&v)[N]) const
   {
-    UniformGradient(HashJoinAxes(hn::Xor(this->Hash[0][ox], this->Row)), g);
+    return UniformSlope(HashJoinAxes(hn::Xor(this->Hash[0][ox], this->Row)), v);
   }
 
 private:
@@ -201,15 +204,12 @@ WALK_INLINE V SumOverCell(
   {
     corners.SelectRow(oy, oz);
     V at[N];
-    V g[N];
     V distance = q;
     std::copy(Gv, Gv + N, at);
-    corners.GetGradient(0, g);
     const V fade = PlainQuinticFade(distance);
-    const V slope = Dot(g, at);
+    const V slope = corners.GetSlope(0, at);
     step(0, at, distance);
-    corners.GetGradient(1, g);
-    const V upper = hn::Mul(PlainQuinticFade(distance), Dot(g, at));
+    const V upper = hn::Mul(PlainQuinticFade(distance), corners.GetSlope(1, at));
     return hn::MulAdd(near[0], hn::MulSub(fade, slope, upper), upper);
   };
   const auto addSlice = [&](int oz) HWY_ATTR

@@ -7,12 +7,12 @@ HWY_INLINE VD ToDouble(const float* from)
   return hn::PromoteTo(DD(), hn::LoadU(DFH(), from));
 }
 
-/// a b - c d, rounded once or twice: where a fused product is not had, in double, which holds products of floats.
+/// a b - c d of exact products: by Kahan's way, or in double where there are no fused products.
 HWY_INLINE V DifferenceOfProducts(V a, V b, V c, V d)
 {
 #if HWY_NATIVE_FMA
   const V product = hn::Mul(c, d);
-  return hn::Add(hn::MulSub(a, b, product), hn::NegMulAdd(c, d, product)); // Kahan
+  return hn::Add(hn::MulSub(a, b, product), hn::NegMulAdd(c, d, product));
 #else
   HWY_ALIGN float values[4][Lanes];
   const V registers[4] = { a, b, c, d };
@@ -64,7 +64,7 @@ HWY_INLINE void SplitUnit(
 enum class Wanted
 {
   Units,
-  /// With lengths, and in 2D what the units lack.
+  /// With lengths, and in 2D, if there is room for it, what the units lack.
   Metrics,
   /// 2D: the vectors as they are, unless they are too long or too short to be squared, and 1/length.
   Inverses
@@ -79,6 +79,7 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
   float* length = nullptr, float* const* rest = nullptr)
 {
   constexpr bool metrics = What == Wanted::Metrics;
+  const bool split = metrics && N == 2 && rest;
   bool all = true;
   HWY_ALIGN float tail[3 * Lanes];
   for (std::size_t i = 0; i < count; i += Lanes)
@@ -110,7 +111,7 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
       hn::StoreU(u[1], DF(), unit[1] + i);
       hn::StoreU(inverse, DF(), unit[2] + i);
     }
-    else if constexpr (metrics && N == 2)
+    else if (split)
     {
       SplitUnit(u, inverse, { unit[0] + i, unit[1] + i }, { rest[0] + i, rest[1] + i });
     }
@@ -128,8 +129,14 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
     if (!hn::AllTrue(DF(), good))
     {
       all = false;
+      HWY_ALIGN float isGood[Lanes];
+      hn::Store(hn::IfThenElseZero(good, Const(1.0f)), DF(), isGood);
       for (std::size_t lane = 0; lane < Lanes && i + lane < count; ++lane)
       {
+        if (isGood[lane] != 0.0f)
+        {
+          continue;
+        }
         Vector<N> vector;
         for (int axis = 0; axis < N; ++axis)
         {
@@ -138,15 +145,11 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
         const double largest = vector.cwiseAbs().maxCoeff();
         const bool any = largest > 0.0 && vector.allFinite();
         const double norm2 = vector.squaredNorm();
-        if (any && norm2 > 1e-30 && norm2 < 1e30)
-        {
-          continue;
-        }
         vector = any ? Vector<N>(vector.normalized()) : Vector<N>::Zero(); // in double
         for (int axis = 0; axis < N; ++axis)
         {
           unit[axis][i + lane] = static_cast<float>(vector[axis]);
-          if (metrics && N == 2)
+          if (split)
           {
             rest[axis][i + lane] = RestOf(vector[axis]);
           }
@@ -193,12 +196,10 @@ void ProjectOnSurface(
     const bool onSurface = length > 0.0 && std::isfinite(length);
     const Vector<3> m = onSurface ? Vector<3>(normal / length) : Vector<3>::Zero();
     Vector<3> u(block.U[0][to], block.U[1][to], block.U[2][to]);
-    if (onSurface && block.Length[to] > 1e-15f && block.Length[to] < 1e15f)
-    {
-      u = Eigen::Map<const Eigen::Vector3f>(vectors + 3 * i).cast<double>() / block.Length[to];
-    }
     if (onSurface && !u.isZero(0.0))
     {
+      const Vector<3> vector = Eigen::Map<const Eigen::Vector3f>(vectors + 3 * i).cast<double>();
+      u = vector.normalized();
       u -= u.dot(m) * m;
       // A vector along the normal has no direction on the surface: what is left of it is rounding.
       const double inPlane = u.norm();
@@ -294,7 +295,7 @@ HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t at, std::size_t co
     }
     const V signA = hn::And(Dot(u, a), signBit);
     const V signC = hn::And(Dot(u, c), signBit);
-    const V factor = hn::Mul(u[axis], perLane ? Load(scale + i) : Const(*scale));
+    const V perStep = perLane ? Load(scale + i) : Const(*scale);
     V change[N];
     if constexpr (N == 2)
     {
@@ -303,10 +304,12 @@ HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t at, std::size_t co
       const V acrossA = hn::Xor(DifferenceOfProducts(u[0], a[1], u[1], a[0]), signA);
       const V acrossC = hn::Xor(DifferenceOfProducts(u[0], c[1], u[1], c[0]), signC);
       const V inverse = Load(own[2] + i);
-      const V turn = hn::MulSub(acrossC, Load(after[2] + i), hn::Mul(acrossA, Load(before[2] + i)));
-      const V scaled = hn::Mul(turn, hn::Mul(hn::Mul(inverse, inverse), inverse));
-      change[0] = hn::Neg(hn::Mul(scaled, u[1]));
-      change[1] = hn::Mul(scaled, u[0]);
+      const V turn = hn::Mul(
+        inverse, hn::MulSub(acrossC, Load(after[2] + i), hn::Mul(acrossA, Load(before[2] + i))));
+      u[0] = hn::Mul(u[0], inverse);
+      u[1] = hn::Mul(u[1], inverse);
+      change[0] = hn::Neg(hn::Mul(turn, u[1]));
+      change[1] = hn::Mul(turn, u[0]);
     }
     else
     {
@@ -318,6 +321,7 @@ HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t at, std::size_t co
           hn::IfThenElse(noneA, u[k], hn::Xor(a[k], signA)));
       }
     }
+    const V factor = hn::Mul(u[axis], perStep);
     for (int k = 0; k < N; ++k)
     {
       float* const bend = block.Bend[k] + at + i;
@@ -439,7 +443,8 @@ bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
     return true;
   }
   float* const rest[2] = { block.URest[0] + at, block.URest[1] + at };
-  UnitVectors<N, Wanted::Metrics>(vectors, count, unit, block.Length + at, rest);
+  UnitVectors<N, Wanted::Metrics>(
+    vectors, count, unit, block.Length + at, setup.SingleCell ? nullptr : rest);
   if (field.Normals)
   {
     const float* normals = field.Normals->Read(first, count, block.Tuples + 3 * BlockRoom);

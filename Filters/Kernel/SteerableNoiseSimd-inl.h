@@ -331,14 +331,15 @@ void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t at, std::si
   counts.Degenerate += count - static_cast<std::size_t>(directed);
 }
 
-/// Cells and fractions of samples from `at` on: floor and difference in double, the rest in float.
-template <int N>
+/// Cells and fractions of samples from `at` on: floor and difference in double, the rest in float. `Plain`: on
+/// the square lattice, without periods and without rounding of cells.
+template <int N, bool Plain>
 HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octave,
   const double* positions, std::size_t at, std::size_t count, MetricBlock& block)
 {
   constexpr std::size_t half = hn::MaxLanes(DD());
   HWY_ALIGN double tail[3 * half] = {};
-  const bool oblique = setup.Parameters.Grid == Lattice::Simplicial;
+  const bool oblique = !Plain && setup.Parameters.Grid == Lattice::Simplicial;
   const VD scale = hn::Set(DD(), octave.CellsPerUnit);
   // Adding this leaves the integer, modulo 2^32, in the low bits.
   const VD toInteger = hn::Set(DD(), 6755399441055744.0);
@@ -373,9 +374,9 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
     {
       // A place that is not finite is cell 0: it must not spoil its neighbours' walk.
       p[axis] = hn::IfThenElseZero(hn::Lt(hn::Abs(p[axis]), hn::Set(DD(), FarthestCell)), p[axis]);
-      VD cell = hn::Floor(hn::Add(p[axis], rounding));
+      VD cell = hn::Floor(Plain ? p[axis] : hn::Add(p[axis], rounding));
       hn::StoreU(hn::DemoteTo(DFH(), hn::Sub(p[axis], cell)), DFH(), block.Fraction[axis] + at + i);
-      if (octave.Period[axis] > 0)
+      if (!Plain && octave.Period[axis] > 0)
       {
         const VD period = hn::Set(DD(), static_cast<double>(octave.Period[axis]));
         cell = hn::NegMulAdd(hn::Floor(hn::Div(cell, period)), period, cell);
@@ -399,7 +400,10 @@ template <int N>
 void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double* positions,
   std::size_t count, float* direct, MetricBlock& block, std::uint64_t& visited)
 {
-  LocatePoints<N>(setup, octave, positions, 0, count, block);
+  const auto& period = octave.Period;
+  const bool plain = setup.SingleCell && period[0] == 0 && period[1] == 0 && period[2] == 0;
+  const auto locate = plain ? &LocatePoints<N, true> : &LocatePoints<N, false>;
+  locate(setup, octave, positions, 0, count, block);
   if (setup.SingleCell)
   {
     LaneCorners<N> corners(octave);
@@ -613,7 +617,7 @@ void LocatePatch(const NoiseSetup& setup, const ImageGrid& grid, const OctaveSet
           block.Positions[3 * i + axis] = place(axis, axis == 0 ? i : row[axis], 1.0);
         }
       }
-      LocatePoints<N>(setup, octave, block.Positions, at, patch.Columns, block);
+      LocatePoints<N, false>(setup, octave, block.Positions, at, patch.Columns, block);
       continue;
     }
     const std::size_t room = patch.Columns + Lanes;

@@ -1655,8 +1655,9 @@ private:
       }
       else
       {
-        // n . v for a far corner is a small difference of large products. Of the high parts of n and the
-        // fraction products and the difference are exact. Where streamlines bend s² is a part of it.
+        // n . v of a far corner is a small difference of large products. Of the high parts of n and the
+        // fraction products and, near the flow, the difference are exact. Where streamlines bend s² is
+        // a part of it, so s is as precise there.
         const V(&high)[2] = sample.HighNormal;
         const V(&low)[2] = sample.LowNormal;
         if constexpr (Curved)
@@ -1704,13 +1705,14 @@ private:
           t[i] = hn::NegMulAdd(sag, sample.Bend[i], t[i]);
         }
       }
+      const V unmoved = s;
       this->Travel(sample, corner, s, sigma);
       ks = hn::Mul(sample.Along, s);
       if (this->Setup.Biaxial)
       {
         // On axes of its own each part keeps its precision.
-        const V second = hn::NegMulAdd(s, sample.Rest[0], Dot(t, sample.M));
-        const V third = hn::NegMulAdd(s, sample.Rest[1], Dot(t, sample.ThirdAxis));
+        const V second = hn::NegMulAdd(unmoved, sample.Rest[0], Dot(t, sample.M));
+        const V third = hn::NegMulAdd(unmoved, sample.Rest[1], Dot(t, sample.ThirdAxis));
         const V es = hn::Mul(sample.Second, second);
         const V bt = hn::Mul(sample.Across, third);
         across2 = hn::MulAdd(bt, third, hn::Mul(es, second));

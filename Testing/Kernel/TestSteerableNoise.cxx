@@ -23,6 +23,8 @@ namespace
 {
 /// Absolute, for noise of unit variance as for the raw sum.
 constexpr double Bound = 2e-6;
+/// Bends of images are differences of neighbours: a few more roundings, at the weakest samples.
+constexpr double CurvedImageBound = 2.5e-6;
 /// Levels without fused products round each of them: on bent surfaces that takes a little more.
 double BoundAt(std::int64_t target, double bound)
 {
@@ -428,7 +430,7 @@ std::vector<double> SlowImage(
 
 template <int N>
 void ExpectReferenceOfImages(const NoiseParameters& parameters, const ImageGrid& grid,
-  const VectorFunction& function, const std::string& family, double bound = Bound)
+  const VectorFunction& function, const std::string& family, double bound = CurvedImageBound)
 {
   const std::vector<float> vectors = SampleVectors(grid, function);
   const std::vector<double> slow = SlowImage<N>(parameters, grid, vectors);
@@ -716,8 +718,9 @@ TEST(SteerableNoise, EqualsTheReferenceOnImages)
         parameters.Normalize = normalization;
         parameters.FeatureSize = 1.5;
         const std::string family = std::string(" image") + (curved ? ", curved" : "");
-        ExpectReferenceOfImages<2>(parameters, SmallGrid(2), Swirl, "2D" + family);
-        ExpectReferenceOfImages<3>(parameters, SmallGrid(3), Swirl, "3D" + family);
+        const double bound = curved ? CurvedImageBound : Bound;
+        ExpectReferenceOfImages<2>(parameters, SmallGrid(2), Swirl, "2D" + family, bound);
+        ExpectReferenceOfImages<3>(parameters, SmallGrid(3), Swirl, "3D" + family, bound);
       }
     }
   }
@@ -1158,6 +1161,28 @@ TEST(SteerableNoise, GivesFiniteNoiseWithoutADirectionOnImages)
   EXPECT_TRUE(std::all_of(noise.begin(), noise.end(), [](float x) { return std::isfinite(x); }));
 }
 
+TEST(SteerableNoise, NeighboursWithoutADirectionChangeNoBits)
+{
+  NoiseParameters parameters;
+  parameters.Quality = 0;
+  parameters.FollowCurvature = false;
+  parameters.Normalize = Normalization::None;
+  RandomSamples samples(600, 30.0, 0.0, 4);
+  for (std::size_t i = 0; i < samples.Count; i += 7)
+  {
+    const float length = i % 2 ? 0.0f : std::numeric_limits<float>::infinity();
+    std::fill_n(samples.Vectors.begin() + 3 * i, 3, length);
+  }
+  std::vector<std::size_t> cuts(samples.Count - 1);
+  std::iota(cuts.begin(), cuts.end(), 1);
+  EXPECT_EQ(CountDifferent(
+              SplitNoise<2>(parameters, samples, {}), SplitNoise<2>(parameters, samples, cuts)),
+    0);
+  EXPECT_EQ(CountDifferent(
+              SplitNoise<3>(parameters, samples, {}), SplitNoise<3>(parameters, samples, cuts)),
+    0);
+}
+
 TEST(SteerableNoise, TakesVectorsOfAnyLength)
 {
   NoiseParameters parameters;
@@ -1174,6 +1199,27 @@ TEST(SteerableNoise, TakesVectorsOfAnyLength)
     const std::vector<float> same = FastNoise<3>(parameters, scaled, Steering::Vectors, &counts);
     EXPECT_EQ(counts.Degenerate, 0u) << scale;
     EXPECT_LE(LargestDifference(same, noise), scale < 1e-37f ? 1e-4 : 1e-5) << scale;
+  }
+  // Nor does it show in images, whose curvature comes from the vectors, or on surfaces.
+  const ImageGrid grid = SmallGrid(2);
+  const std::vector<float> vectors = SampleVectors(grid, Swirl);
+  const std::vector<float> image = ImageNoise(parameters, 2, grid, vectors);
+  const std::vector<float> surface = FastNoise<3>(parameters, samples, Steering::Normals);
+  for (float scale : { 1e-30f, 1e-14f, 1e-13f, 1e13f, 5e14f, 1e30f })
+  {
+    std::vector<float> scaled = vectors;
+    RandomSamples scaledSamples = samples;
+    for (auto* array : { &scaled, &scaledSamples.Vectors })
+    {
+      for (float& x : *array)
+      {
+        x *= scale;
+      }
+    }
+    EXPECT_LE(LargestDifference(ImageNoise(parameters, 2, grid, scaled), image), 1e-5) << scale;
+    EXPECT_LE(
+      LargestDifference(FastNoise<3>(parameters, scaledSamples, Steering::Normals), surface), 1e-5)
+      << scale;
   }
   // Denormal numbers have few bits left, so compare with a vector that has as few.
   for (std::size_t i = 0; i < samples.Count; ++i)

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseArrays.h"
 
+#include "SurfaceFields.h"
+
 #include "vtkArrayDispatch.h"
 #include "vtkDataArray.h"
 #include "vtkDataArrayRange.h"
@@ -9,10 +11,12 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkInformation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <sstream>
 
 namespace noise
 {
@@ -284,6 +288,65 @@ vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)
     {
       return array;
     }
+  }
+  return nullptr;
+}
+
+vtkDataArray* FindSteeringArray(
+  vtkDataSet* dataset, vtkInformation* choice, bool& cells, std::string& why)
+{
+  why.clear();
+  const int association = choice->Has(vtkDataObject::FIELD_ASSOCIATION())
+    ? choice->Get(vtkDataObject::FIELD_ASSOCIATION())
+    : vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS;
+  const char* name =
+    choice->Has(vtkDataObject::FIELD_NAME()) ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  // The association that was asked for, then the other one.
+  const bool cellsFirst = association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  for (const bool onCells : { cellsFirst, !cellsFirst })
+  {
+    vtkDataSetAttributes* attributes =
+      dataset->GetAttributes(onCells ? vtkDataObject::CELL : vtkDataObject::POINT);
+    vtkDataArray* array = name && *name ? attributes->GetArray(name) : FindDefaultArray(attributes);
+    if (!array)
+    {
+      continue;
+    }
+    std::ostringstream message;
+    message << "Array '" << (array->GetName() ? array->GetName() : "") << "' ";
+    const int components = array->GetNumberOfComponents();
+    const vtkIdType samples = onCells ? dataset->GetNumberOfCells() : dataset->GetNumberOfPoints();
+    // Chosen by default in a panel when nothing better is there, but no flow.
+    if (array == attributes->GetNormals() || array == attributes->GetTCoords() ||
+      array->GetDataType() == VTK_UNSIGNED_CHAR)
+    {
+      message << "holds normals, texture coordinates or colours, not vectors. Choose another one, or copy "
+                 "it with the Calculator if it is meant.";
+    }
+    else if (!IsVector(components) && !IsTensor(components))
+    {
+      message << "has " << components
+              << " component(s). Choose one with 2 or 3 (vectors) or 4, 6 or 9 (tensors).";
+    }
+    else if (array->GetNumberOfTuples() != samples)
+    {
+      message << "has " << array->GetNumberOfTuples() << " tuples for " << samples
+              << (onCells ? " cells" : " points") << ". Mend the data or choose another array.";
+    }
+    else
+    {
+      cells = onCells;
+      return array;
+    }
+    why = message.str();
+  }
+  if (why.empty())
+  {
+    why = name && *name
+      ? "There is no array '" + std::string(name) +
+        "' on points or cells. Choose one that exists."
+      : "There are no vectors. Name an array with 2 or 3 components (vectors) or 4, 6 or 9 "
+        "(tensors); three scalars can be merged with Merge Vector Components or the Calculator.";
   }
   return nullptr;
 }

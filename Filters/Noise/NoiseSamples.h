@@ -39,6 +39,11 @@ public:
   /// Parts that are evaluated independently: rows of a grid, or samples.
   std::size_t GetNumberOfParts() const;
 
+  /// Unit normals of samples on surfaces, 0 off them; null where there are none.
+  vtkFloatArray* GetNormals() const { return this->Normals; }
+  /// What ComputeCurvature found; null before, for tensors and for images.
+  vtkFloatArray* GetCurvature() const { return this->Curvature; }
+
   /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.
   void ComputeCurvature(double featureSize);
 

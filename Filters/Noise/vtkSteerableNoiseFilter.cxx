@@ -6,6 +6,7 @@
 #include "NoiseImages.h"
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
+#include "SurfaceFields.h"
 
 #include "vtkCellData.h"
 #include "vtkCommunicator.h"
@@ -134,13 +135,6 @@ vtkDataSetAttributes* GetAttributes(vtkDataSet* dataset, bool cells)
                : dataset->GetPointData();
 }
 
-bool IsUsable(vtkDataArray* array)
-{
-  return array &&
-    (noise::IsVector(array->GetNumberOfComponents()) ||
-      noise::IsTensor(array->GetNumberOfComponents()));
-}
-
 /// Degenerate samples are counted by the kernel with the ghosts; these are the ghosts among them.
 vtkIdType CountDegenerateGhosts(const Block& block)
 {
@@ -214,67 +208,9 @@ struct vtkSteerableNoiseFilter::Internals
   /// Finds the array of a block; false with `why` where there is none that can be used.
   bool FindArray(Block& block, std::string& why) const
   {
-    why.clear();
-    vtkInformation* info = this->Self->GetInputArrayInformation(0);
-    const int association = info->Has(vtkDataObject::FIELD_ASSOCIATION())
-      ? info->Get(vtkDataObject::FIELD_ASSOCIATION())
-      : vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS;
-    const char* name =
-      info->Has(vtkDataObject::FIELD_NAME()) ? info->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-    // The association that was asked for, then the other one.
-    const bool cellsFirst = association == vtkDataObject::FIELD_ASSOCIATION_CELLS;
-    for (const bool cells : { cellsFirst, !cellsFirst })
-    {
-      vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, cells);
-      vtkDataArray* array =
-        name && *name ? attributes->GetArray(name) : noise::FindDefaultArray(attributes);
-      if (!array)
-      {
-        continue;
-      }
-      // Chosen by default in a panel when nothing better is there, but no flow.
-      if (array == attributes->GetNormals() || array == attributes->GetTCoords() ||
-        array->GetDataType() == VTK_UNSIGNED_CHAR)
-      {
-        why = "Array '" + std::string(array->GetName() ? array->GetName() : "") +
-          "' holds normals, texture coordinates or colours, not vectors. Choose another one, or "
-          "copy "
-          "it with the Calculator if it is meant.";
-        continue;
-      }
-      if (!IsUsable(array))
-      {
-        std::ostringstream message;
-        message << "Array '" << (array->GetName() ? array->GetName() : "") << "' has "
-                << array->GetNumberOfComponents()
-                << " component(s). Choose one with 2 or 3 (vectors) or 4, 6 or 9 (tensors).";
-        why = message.str();
-        continue;
-      }
-      const vtkIdType samples =
-        cells ? block.DataSet->GetNumberOfCells() : block.DataSet->GetNumberOfPoints();
-      if (array->GetNumberOfTuples() != samples)
-      {
-        std::ostringstream message;
-        message << "Array '" << (array->GetName() ? array->GetName() : "") << "' has "
-                << array->GetNumberOfTuples() << " tuples for " << samples
-                << (cells ? " cells" : " points") << ". Mend the data or choose another array.";
-        why = message.str();
-        continue;
-      }
-      block.Array = array;
-      block.Cells = cells;
-      return true;
-    }
-    if (why.empty())
-    {
-      why = name && *name
-        ? "There is no array '" + std::string(name) +
-          "' on points or cells. Choose one that exists."
-        : "There are no vectors. Name an array with 2 or 3 components (vectors) or 4, 6 or 9 "
-          "(tensors); three scalars can be merged with Merge Vector Components or the Calculator.";
-    }
-    return false;
+    block.Array = noise::FindSteeringArray(
+      block.DataSet, this->Self->GetInputArrayInformation(0), block.Cells, why);
+    return block.Array != nullptr;
   }
 
   void Process(const Block& block, const steerable::NoiseParameters& parameters,

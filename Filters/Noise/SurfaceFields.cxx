@@ -1,0 +1,181 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "SurfaceFields.h"
+
+#include "CellSums.h"
+#include "NoiseArrays.h"
+#include "NoiseSamples.h"
+#include "NoiseThreads.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkInformation.h"
+#include "vtkMath.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace noise
+{
+namespace
+{
+constexpr float NaN = std::numeric_limits<float>::quiet_NaN();
+
+/// Length of a vector, or Frobenius norm of a tensor of 6 components.
+double GetLength(const float* tuple, int components)
+{
+  double squares = 0.0;
+  for (int c = 0; c < components; ++c)
+  {
+    // Off the diagonal of a tensor each component stands twice.
+    squares += (c < 3 ? 1.0 : 2.0) * double(tuple[c]) * double(tuple[c]);
+  }
+  return std::sqrt(squares);
+}
+
+/// The array as floats of 3 or 6 components, divided by the longest; what is not finite becomes NaN.
+void SetSteering(SurfaceFields& fields, vtkDataArray* array)
+{
+  const bool vectors = IsVector(array->GetNumberOfComponents());
+  const int components = vectors ? 3 : 6;
+  const auto reader = vectors ? MakeVectorReader(array, WorldAxes, false)
+                              : MakeTensorReader(array, WorldAxes, false);
+  const vtkIdType count = array->GetNumberOfTuples();
+  fields.Steering = NewOutputArray("Steering", components, count);
+  float* steering = fields.Steering->GetPointer(0);
+  double longest = 0.0;
+  constexpr vtkIdType chunk = 4096;
+  for (vtkIdType first = 0; first < count; first += chunk)
+  {
+    const vtkIdType size = std::min(chunk, count - first);
+    float* out = steering + components * first;
+    const float* read =
+      reader->Read(static_cast<std::size_t>(first), static_cast<std::size_t>(size), out);
+    std::copy(read, read + components * size, out);
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      const double length = GetLength(out + components * i, components);
+      longest = std::isfinite(length) ? std::max(longest, length) : longest;
+    }
+  }
+  fields.Longest = longest > 0.0 ? longest : 1.0;
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    float* tuple = steering + components * i;
+    const bool finite = std::isfinite(GetLength(tuple, components));
+    for (int c = 0; c < components; ++c)
+    {
+      tuple[c] = finite ? static_cast<float>(tuple[c] / fields.Longest) : NaN;
+    }
+  }
+}
+
+/// Means over the cells of each point, NaN where none of them is finite and seen.
+vtkSmartPointer<vtkFloatArray> CellsToPoints(vtkPolyData* surface, vtkFloatArray* cells)
+{
+  const int components = cells->GetNumberOfComponents();
+  const vtkIdType count = surface->GetNumberOfPoints();
+  auto points = NewOutputArray("Steering", components, count);
+  vtkUnsignedCharArray* ghosts = surface->GetCellGhostArray();
+  const auto counts = [&](vtkIdType cell)
+  {
+    return !std::isnan(cells->GetValue(components * cell)) &&
+      !(ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::HIDDENCELL));
+  };
+  const CellDimensions dimensions(surface); // threads may ask for cells from here on
+  for (int part = 0; part < components; part += 3)
+  {
+    auto means = NewOutputArray("Means", 3, count);
+    PointSums sums(surface, means, DirectionSteps);
+    sums.AddCells(false,
+      [&](vtkIdType cell, vtkIdList* ids, PointSums::Shares& shares)
+      {
+        const float* tuple = cells->GetPointer(components * cell) + part;
+        surface->GetCellPoints(cell, ids);
+        for (vtkIdType i = 0; i < ids->GetNumberOfIds() && counts(cell); ++i)
+        {
+          sums.Append(shares, ids->GetId(i), Eigen::Vector3d(tuple[0], tuple[1], tuple[2]));
+        }
+      });
+    sums.Finish();
+    for (vtkIdType point = 0; point < count; ++point)
+    {
+      std::copy_n(means->GetPointer(3 * point), 3, points->GetPointer(components * point) + part);
+    }
+  }
+  std::vector<bool> reached(static_cast<std::size_t>(count), false);
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell)
+  {
+    surface->GetCellPoints(cell, ids);
+    for (vtkIdType i = 0; i < ids->GetNumberOfIds() && counts(cell); ++i)
+    {
+      reached[static_cast<std::size_t>(ids->GetId(i))] = true;
+    }
+  }
+  for (vtkIdType point = 0; point < count; ++point)
+  {
+    if (!reached[static_cast<std::size_t>(point)])
+    {
+      std::fill_n(points->GetPointer(components * point), components, NaN);
+    }
+  }
+  return points;
+}
+
+/// NaN would not survive a shader.
+void MarkNotFinite(vtkFloatArray* array)
+{
+  float* values = array->GetPointer(0);
+  std::replace_if(
+    values, values + array->GetNumberOfValues(), [](float value) { return std::isnan(value); },
+    SurfaceFields::NotFinite);
+}
+} // namespace
+
+SurfaceFields ComputeSurfaceFields(
+  vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell)
+{
+  SurfaceFields fields;
+  const int components = array->GetNumberOfComponents();
+  if (!IsVector(components) && !IsTensor(components))
+  {
+    return fields;
+  }
+  SetSteering(fields, array);
+  if (cells && !perCell)
+  {
+    fields.Steering = CellsToPoints(surface, fields.Steering);
+  }
+  if (IsVector(components))
+  {
+    Samples samples(surface, fields.Steering, cells && perCell, nullptr, 1);
+    // Curvatures are summed in steps of a millionth of this cell's: fine enough for streaks of any size.
+    double bounds[6];
+    surface->GetBounds(bounds);
+    const double diagonal =
+      std::hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]);
+    if (std::isfinite(diagonal) && diagonal > 0.0)
+    {
+      WithThreads([&] { samples.ComputeCurvature(0.01 * diagonal); });
+    }
+    fields.Normals = samples.GetNormals();
+    for (vtkIdType i = 0; fields.Normals && i < fields.Normals->GetNumberOfTuples(); ++i)
+    {
+      Eigen::Map<Eigen::Vector3f> normal(fields.Normals->GetPointer(3 * i));
+      normal = normal.allFinite() ? normal.normalized().eval() : Eigen::Vector3f::Zero().eval();
+    }
+    fields.Curvature = samples.GetCurvature();
+  }
+  MarkNotFinite(fields.Steering);
+  return fields;
+}
+} // namespace noise

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The shader of vtkSteerableNoiseMapper (private): its options, its source and its uniforms.
+ */
+#ifndef NoiseShader_h
+#define NoiseShader_h
+
+#include "NoiseParameters.h"
+
+#include "vtkShader.h"
+#include "vtkType.h"
+
+#include <array>
+#include <map>
+#include <string>
+
+class vtkActor;
+class vtkRenderer;
+class vtkShaderProgram;
+
+namespace noise
+{
+/// Options of the mapper; those of the model are the kernel's own.
+struct ShaderOptions
+{
+  steerable::NoiseParameters Model;
+  bool Pixels = true;
+  double FeaturePixels = 6.0;
+  /// As set; 0: automatic. Model has the values in use.
+  double FeatureSize = 0.0;
+  double ReferenceMagnitude = 0.0;
+  double Phase = 0.0;
+  bool Animate = false;
+  double TimePeriod = 0.0;
+  double Time = 0.0;
+  bool VectorsPerCell = false;
+  int ColorMode = 0;
+  double Intensity = 0.8;
+  double Contrast = 1.0;
+  std::array<double, 3> MaskColor = { 0.5, 0.5, 0.5 };
+  bool UseMaskColor = false;
+  bool OutputValue = false;
+};
+
+/// What the source of the shader depends on; all else is uniforms.
+struct ShaderVariant
+{
+  bool Tensors = false;
+  bool PerCell = false;
+};
+
+/// Adds the noise to the templates of a polydata mapper, before it fills them.
+void AddNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const ShaderOptions& options,
+  const ShaderVariant& variant);
+
+/// Uniforms that are the same for all blocks. Vertices are (place - `shift`) * `scale`.
+void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRenderer* renderer,
+  vtkActor* actor, const std::array<double, 3>& shift, const std::array<double, 3>& scale);
+} // namespace noise
+
+#endif

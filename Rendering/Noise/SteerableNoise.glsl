@@ -1,0 +1,518 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Steerable noise of one fragment: the model of Filters/Kernel/SteerableNoiseReference.cxx in GLSL, to be
+// read beside it; functions have the names of the reference and of MetricTensor.cxx, Surflet.h, LatticeHash.h.
+//
+// What differs is the order of the corners. The reference visits a box; here a loop walks the lattice along
+// the axis that the flow follows most, and in each section x = i solves for the rows, and in each row for the
+// corners, that the bent ellipsoid q < 1 can reach. A corner costs a hash, a gradient and about 60 operations;
+// straight streaks of half-length 6 visit some 22 corners a fragment. Motion widens the ellipsoid by half of
+// |Speed|, Basis Streaks by sqrt(2) and by its jitter of half a cell.
+//
+// Range: places up to 2^23 cells from noiseOrigin; the lattice itself has no period below 2^32 cells.
+// The mapper defines before this text: the constants of LatticeHash.h, VARIANCE_FLOOR, NOISE_OCTAVES, and, as
+// its options ask, NOISE_TENSORS, NOISE_STREAKS, NOISE_MOTION, NOISE_PIXELS, NOISE_CELLS.
+
+uniform vec3 noiseEye;             // the eye in model coordinates, relative to the origin of places
+uniform vec3 noiseView;            // parallel projection: the direction to the eye; perspective: 0
+uniform float noisePixel;          // model size of a pixel where gl_FragCoord.w is 1
+uniform float noiseFeature;        // World: side of a lattice cell; Pixels: FeaturePixels
+uniform int noiseOrigin[3 * NOISE_OCTAVES]; // corner where places begin, one for each octave
+uniform float noiseRest[3 * NOISE_OCTAVES]; // what is left of that place, in units of the octave
+uniform int noiseOriginLevel;      // noiseOrigin counts cells of 2^this (Pixels), or of noiseFeature (World: 0)
+uniform float noiseAlong;          // eigenvalue along the flow, 1 / StreakLength^2
+uniform float noiseEigenvalueSum;
+uniform float noiseStrength;
+uniform float noiseReference;      // StrengthMode Magnitude: length with the full strength; Constant: 0
+uniform float noiseMask;           // vectors at or below this length show no noise
+uniform float noiseLacunarity;
+uniform float noiseGain;
+uniform float noiseDensity;        // probability of a streak at a corner
+uniform float noisePhase;
+uniform float noiseSpeed;
+uniform int noiseSeed;
+uniform float noiseCurvature;      // 1: follow it, 0: straight
+uniform float noiseLongest;        // of this block: length that the vectors were divided by
+
+struct AxialMetric
+{
+  vec3 Direction;
+  vec3 SecondAxis;
+  float Along;
+  float Across;
+  float Second;
+  vec3 Bend;
+};
+
+uint HashOneAxis(uint coordinate, uint first, uint last)
+{
+  uint h = coordinate * first;
+  h ^= h >> HASH_AXIS_SHIFT;
+  return h * last;
+}
+
+uint HashJoinAxes(uint h)
+{
+  h ^= h >> HASH_JOIN_SHIFT;
+  h *= HASH_JOIN;
+  return h ^ (h >> HASH_JOIN_SHIFT);
+}
+
+uint HashOfSeed(uint seed)
+{
+  return HashOneAxis(seed + 1u, HASH_SEED, HASH_AXIS_FINAL.x);
+}
+
+uint HashStream(uint hash, uint stream)
+{
+  return HashJoinAxes(hash + stream * HASH_SEED);
+}
+
+float HashToUnit(uint hash)
+{
+  return float(hash >> 8) * (1.0 / 16777216.0);
+}
+
+/// Quintic, of |t| < 1.
+float FadeOf(float t)
+{
+  return 1.0 - t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+}
+
+vec3 UniformGradient(uint hash)
+{
+  float height = (float(int((hash << 1) & 0xFFFE0000u)) + 65536.0) * (1.0 / 2147483648.0);
+  float angle = (float(int(hash << 16)) + 32768.0) * (3.14159265 / 4294967296.0);
+  float radius = sqrt(1.0 - height * height);
+  // Sine and cosine of at most a quarter turn, to 1e-5: fewer operations than the built-in ones.
+  float a = angle * angle;
+  float sine = angle * (0.999997176 + a * (-0.166649797 + a * (0.00830743921 + a * -0.000183879492)));
+  float cosine = 0.99999675 + a * (-0.49992689 + a * (0.04150074 + a * -0.0012744));
+  vec3 gradient = vec3(radius * cosine, radius * sine, height);
+  return (hash >> 31) != 0u ? -gradient : gradient;
+}
+
+float StreakProfile(float sigma)
+{
+  return abs(sigma) < 1.0 ? 0.5 * (1.0 + sigma) * min(1.0, (1.0 - sigma) * (1.0 / 0.15)) : 0.0;
+}
+
+float Blend(float eigenvalue, float strength)
+{
+  return 1.0 + strength * (eigenvalue - 1.0);
+}
+
+float StrengthOf(float magnitude)
+{
+  return noiseReference > 0.0 ? noiseStrength * min(1.0, magnitude / noiseReference) : noiseStrength;
+}
+
+/// Of a unit vector; a normal of 0: not on a surface.
+AxialMetric MetricFromVector(vec3 direction, vec3 normal, float strength)
+{
+  AxialMetric metric;
+  bool surface = dot(normal, normal) > 0.0;
+  float across = noiseEigenvalueSum - noiseAlong;
+  across = surface ? across - SURFACE_NORMAL_EIGENVALUE : 0.5 * across;
+  across = Blend(max(noiseAlong, across - 1e-4), strength);
+  vec3 axis = abs(direction.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  metric.Direction = direction;
+  metric.SecondAxis = surface ? normal : normalize(cross(direction, axis));
+  metric.Along = Blend(noiseAlong, strength);
+  metric.Across = across;
+  metric.Second = surface ? Blend(SURFACE_NORMAL_EIGENVALUE, strength) : across;
+  metric.Bend = vec3(0.0);
+  return metric;
+}
+
+#ifdef NOISE_TENSORS
+vec3 TimesSymmetric(vec3 diagonal, vec3 off, vec3 v)
+{
+  return vec3(diagonal.x * v.x + off.x * v.y + off.z * v.z,
+    off.x * v.x + diagonal.y * v.y + off.y * v.z, off.z * v.x + off.y * v.y + diagonal.z * v.z);
+}
+
+/// The unit eigenvector of an eigenvalue that stands alone.
+vec3 EigenvectorOf(vec3 diagonal, vec3 off, float eigenvalue)
+{
+  vec3 d = diagonal - eigenvalue;
+  vec3 x = vec3(d.x, off.x, off.z);
+  vec3 y = vec3(off.x, d.y, off.y);
+  vec3 z = vec3(off.z, off.y, d.z);
+  vec3 a = cross(x, y);
+  vec3 b = cross(y, z);
+  vec3 c = cross(z, x);
+  float aa = dot(a, a);
+  float bb = dot(b, b);
+  float cc = dot(c, c);
+  vec3 longest = aa >= bb && aa >= cc ? a : bb >= cc ? b : c;
+  return normalize(longest);
+}
+
+/// XX YY ZZ and XY YZ XZ; false where no direction is the major one.
+bool MetricFromTensor(vec3 diagonal, vec3 off, float strength, out AxialMetric metric)
+{
+  vec3 large = max(abs(diagonal), abs(off));
+  float largest = max(large.x, max(large.y, large.z));
+  if (!(largest > 0.0))
+  {
+    return false;
+  }
+  diagonal /= largest;
+  off /= largest;
+  float mean = (diagonal.x + diagonal.y + diagonal.z) / 3.0;
+  diagonal -= mean;
+  float p = sqrt((dot(diagonal, diagonal) + 2.0 * dot(off, off)) / 6.0);
+  if (!(p > 1e-6))
+  {
+    return false;
+  }
+  float determinant = diagonal.x * (diagonal.y * diagonal.z - off.y * off.y) -
+    off.x * (off.x * diagonal.z - off.y * off.z) + off.z * (off.x * off.y - diagonal.y * off.z);
+  float angle = acos(clamp(determinant / (2.0 * p * p * p), -1.0, 1.0)) / 3.0;
+  // The eigenvalue farthest from the others is found first, the other two in the plane across it: so close
+  // eigenvalues cost no precision.
+  bool majorFirst = determinant >= 0.0;
+  float alone = 2.0 * p * (majorFirst ? cos(angle) : cos(angle + 2.0943951));
+  vec3 first = EigenvectorOf(diagonal, off, alone);
+  alone = dot(first, TimesSymmetric(diagonal, off, first));
+  vec3 axis = abs(first.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+  vec3 s = normalize(cross(first, axis));
+  vec3 t = cross(first, s);
+  vec3 Ts = TimesSymmetric(diagonal, off, s);
+  float ss = dot(s, Ts);
+  float st = dot(t, Ts);
+  float tt = dot(t, TimesSymmetric(diagonal, off, t));
+  float halfGap = sqrt(0.25 * (ss - tt) * (ss - tt) + st * st);
+  float larger = 0.5 * (ss + tt) + halfGap;
+  float smaller = 0.5 * (ss + tt) - halfGap;
+  float turn = 0.5 * atan(2.0 * st, ss - tt);
+  vec3 ofLarger = cos(turn) * s + sin(turn) * t;
+  float major = majorFirst ? alone : larger;
+  float middle = majorFirst ? larger : smaller;
+  float minor = majorFirst ? smaller : alone;
+  if (!(major - minor > 1e-6))
+  {
+    return false;
+  }
+  vec3 middleAxis = majorFirst ? ofLarger : cross(first, ofLarger);
+  float along = noiseAlong;
+  float across = max(along, 0.5 * (noiseEigenvalueSum - along) - 1e-4);
+  metric.Direction = majorFirst ? first : ofLarger;
+  metric.SecondAxis = middleAxis;
+  metric.Along = Blend(along, strength);
+  metric.Across = Blend(across, strength);
+  metric.Second =
+    Blend(across + (along - across) * (middle - minor) / (major - minor), strength);
+  metric.Bend = vec3(0.0);
+  return true;
+}
+#endif
+
+/// `curvature` in 1 / cells.
+void ApplyCurvature(inout AxialMetric metric, vec3 curvature)
+{
+  vec3 turning = curvature - dot(curvature, metric.Direction) * metric.Direction;
+  float squared = dot(turning, turning);
+  metric.Bend = squared > 1.0 ? turning * inversesqrt(squared) : turning;
+  squared = min(squared, 1.0);
+  float keeps = 1.0 - squared;
+  metric.Along = max(metric.Along, squared);
+  metric.Across = Blend(metric.Across, keeps);
+  metric.Second = Blend(metric.Second, keeps);
+}
+
+vec3 Cycle(vec3 v, int steps)
+{
+  return steps == 0 ? v : steps == 1 ? v.yzx : v.zxy;
+}
+
+uvec3 Cycle(uvec3 v, int steps)
+{
+  return steps == 0 ? v : steps == 1 ? v.yzx : v.zxy;
+}
+
+/// Noise of unit variance at `place`, in cells from the corner `origin`.
+float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
+{
+  vec3 cell = floor(place);
+  vec3 f = place - cell;
+  uvec3 corner = uvec3(ivec3(cell)) + origin;
+
+  // From here on x is the axis that the flow follows most. Gradients stay in the axes of the lattice.
+  vec3 size = abs(metric.Direction);
+  int cycle = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+  vec3 thirdAxis = cross(metric.SecondAxis, metric.Direction);
+  vec3 u = Cycle(metric.Direction, cycle);
+  vec3 m = Cycle(metric.SecondAxis, cycle);
+  vec3 c = Cycle(thirdAxis, cycle);
+  vec3 d = Cycle(metric.Bend, cycle);
+  f = Cycle(f, cycle);
+  corner = Cycle(corner, cycle);
+  uvec3 first = Cycle(HASH_AXIS, cycle);
+  uvec3 last = Cycle(HASH_AXIS_FINAL, cycle);
+
+  float k = metric.Along;
+  float b = metric.Across;
+  float e = metric.Second;
+  float bendC = dot(d, c);
+  float bendM = dot(d, m);
+
+  // The ellipsoid that holds all that a corner can add to, where motion and jitter move it.
+  float reachAlong = 1.0;
+  float reachAcross = 1.0;
+  float jitter = 0.0;
+#ifdef NOISE_MOTION
+  float travel = 0.5 * abs(noiseSpeed);
+  reachAlong = 1.0 / ((1.0 + travel) * (1.0 + travel));
+  reachAcross = 1.0 / (1.0 + travel);
+#endif
+#ifdef NOISE_STREAKS
+  reachAlong *= 0.5; // a streak is a cylinder, which the ellipsoid has to hold
+  reachAcross *= 0.5;
+  jitter = 0.5;
+#endif
+  float kr = k * reachAlong;
+  float br = b * reachAcross;
+  float er = e * reachAcross;
+
+  float farthest = inversesqrt(kr);
+  float extent = sqrt(u.x * u.x / kr + c.x * c.x / br + m.x * m.x / er) + jitter;
+  float sag = 0.5 * d.x / kr;
+  int begin = int(ceil(f.x - extent + min(sag, 0.0)));
+  int end = int(floor(f.x + extent + max(sag, 0.0)));
+  // Second order of the bend within a section, which the sections leave out, and jitter.
+  float spread = (c.x * c.x / br + m.x * m.x / er) / (u.x * u.x);
+  float slack = min(0.5 * length(d) * spread, 1.0) + 2.0 * jitter;
+
+  float noise = 0.0;
+  float variance = 0.0;
+  for (int i = begin; i <= end; ++i)
+  {
+    float x = float(i) - f.x;
+    // The middle of the section: where the streamline's parabola s u + s^2 d / 2 has this x.
+    float s0 = x / u.x;
+    s0 = (x - 0.5 * s0 * s0 * d.x) / u.x;
+    s0 = clamp((x - 0.5 * s0 * s0 * d.x) / u.x, -farthest, farthest);
+    vec3 middle = s0 * u + 0.5 * s0 * s0 * d;
+    float dx = x - middle.x;
+    // q there to second order: k (s0 + u.v)^2 + b (C.v)^2 + e (M.v)^2 with axes that turn with the parabola.
+    vec3 C = c - s0 * bendC * u;
+    vec3 M = m - s0 * bendM * u;
+    float alongX = kr * (s0 + u.x * dx);
+    float cx = br * C.x * dx;
+    float mx = er * M.x * dx;
+    float yy = kr * u.y * u.y + br * C.y * C.y + er * M.y * M.y;
+    float yz = kr * u.y * u.z + br * C.y * C.z + er * M.y * M.z;
+    float zz = kr * u.z * u.z + br * C.z * C.z + er * M.z * M.z;
+    float y1 = alongX * u.y + cx * C.y + mx * M.y;
+    float z1 = alongX * u.z + cx * C.z + mx * M.z;
+    float q0 = alongX * (s0 + u.x * dx) + cx * C.x * dx + mx * M.x * dx;
+    float inverseZ = 1.0 / zz;
+    float sy = 1.0 / (yy - yz * yz * inverseZ);
+    float ym = -(y1 - z1 * yz * inverseZ) * sy;
+    float left = 1.0 - (q0 - z1 * z1 * inverseZ - ym * ym / sy);
+    float halfY = sqrt(max(left, 0.0) * sy) + slack;
+    if (left < -4.0 * slack)
+    {
+      continue;
+    }
+    float toY = f.y + middle.y;
+    float toZ = f.z + middle.z;
+    int beginY = int(ceil(toY + ym - halfY));
+    int endY = int(floor(toY + ym + halfY));
+    uint hashX = HashOneAxis(corner.x + uint(i), first.x, last.x) ^ seed;
+    for (int j = beginY; j <= endY; ++j)
+    {
+      float y = float(j) - f.y;
+      float dy = y - middle.y;
+      float zm = -(z1 + yz * dy) * inverseZ;
+      float leftZ = 1.0 - (q0 + (2.0 * y1 + yy * dy) * dy - zm * zm * zz);
+      if (leftZ < -4.0 * slack)
+      {
+        continue;
+      }
+      float halfZ = sqrt(max(leftZ, 0.0) * inverseZ) + slack;
+      int beginZ = int(ceil(toZ + zm - halfZ));
+      int endZ = int(floor(toZ + zm + halfZ));
+      uint hashXY = hashX ^ HashOneAxis(corner.y + uint(j), first.y, last.y);
+      for (int l = beginZ; l <= endZ; ++l)
+      {
+        vec3 v = vec3(x, y, float(l) - f.z);
+#ifdef NOISE_STREAKS
+        uint hash =
+          HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
+        vec3 shift = vec3(HashToUnit(HashStream(hash, 3u)), HashToUnit(HashStream(hash, 4u)),
+                       HashToUnit(HashStream(hash, 5u))) - 0.5;
+        v += Cycle(shift, cycle);
+#endif
+        float s = dot(v, u);
+        float bend = 0.5 * s * s;
+        float t = dot(v, c) - bend * bendC;
+        float h = dot(v, m) - bend * bendM;
+        float amplitude = 1.0;
+#ifdef NOISE_MOTION
+#ifndef NOISE_STREAKS
+        uint hash =
+          HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
+#endif
+        float clock = fract(noisePhase + HashToUnit(HashStream(hash, 1u)));
+        s += (clock - 0.5) * noiseSpeed * inversesqrt(k);
+        amplitude = sin(3.14159265 * clock);
+        amplitude *= amplitude * 1.63299316;
+#endif
+        float across = b * t * t + e * h * h;
+        float q = k * s * s + across;
+#ifdef NOISE_STREAKS
+        if (across < 1.0)
+        {
+          float profile = StreakProfile(-s * sqrt(k)) * FadeOf(sqrt(across));
+          bool on = HashToUnit(HashStream(hash, 2u)) < noiseDensity;
+          noise += on ? amplitude * profile : 0.0;
+          variance += noiseDensity * profile * profile;
+        }
+#else
+        if (q < 1.0)
+        {
+#ifndef NOISE_MOTION
+          uint hash =
+            HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
+#endif
+          float weight = FadeOf(q);
+          float ks = k * s;
+          float bt = b * t;
+          float eh = e * h;
+          vec3 Gv = ks * metric.Direction + bt * thirdAxis + eh * metric.SecondAxis;
+          noise += amplitude * weight * dot(UniformGradient(hash), Gv);
+          variance += weight * weight * (ks * ks + bt * bt + eh * eh) * (1.0 / 3.0);
+        }
+#endif
+      }
+    }
+  }
+  return noise * inversesqrt(variance + VARIANCE_FLOOR);
+}
+
+/// Pixels that a streak of one cell of `size` is wide on the screen; what is narrower than 2 fades to the mean.
+float AntiAliased(float size, float pixel, vec3 place, vec3 direction, vec3 normal)
+{
+  float width = size / pixel;
+  if (normal != vec3(0.0))
+  {
+    vec3 view = noiseView == vec3(0.0) ? normalize(noiseEye - place) : noiseView;
+    float alongView = dot(direction, view);
+    width *=
+      min(1.0, abs(dot(normal, view)) * inversesqrt(max(1.0 - alongView * alongView, 1e-6)));
+  }
+  return smoothstep(1.0, 2.0, width);
+}
+
+/// A corner of cells of 2^-shift as one of cells of 1, and what is left over in those.
+uvec3 ScaleOrigin(ivec3 origin, int shift, out vec3 rest)
+{
+  rest = vec3(0.0);
+  if (shift >= 0)
+  {
+    return shift < 32 ? uvec3(origin) << uint(shift) : uvec3(0u);
+  }
+  int right = min(-shift, 31);
+  ivec3 scaled = origin >> right;
+  rest = vec3(origin - (scaled << right)) * exp2(-float(right));
+  return uvec3(scaled);
+}
+
+/// Fractal sum over lattices of `size`, then finer ones; `level` is log2 of it where sizes come from pixels.
+float SteerableNoise(vec3 place, float size, int level, float pixel, AxialMetric metric,
+  vec3 curvature, vec3 normal)
+{
+  float sum = 0.0;
+  float power = 0.0;
+  float amplitude = 1.0;
+  float fineness = 1.0;
+  for (int i = 0; i < NOISE_OCTAVES; ++i)
+  {
+    float octaveSize = size / fineness;
+    float share = AntiAliased(octaveSize, pixel, place, metric.Direction, normal);
+    if (share > 0.0)
+    {
+      AxialMetric bent = metric;
+      ApplyCurvature(bent, curvature * octaveSize);
+      ivec3 origin =
+        ivec3(noiseOrigin[3 * i], noiseOrigin[3 * i + 1], noiseOrigin[3 * i + 2]);
+      vec3 rest = vec3(noiseRest[3 * i], noiseRest[3 * i + 1], noiseRest[3 * i + 2]);
+      vec3 restOfOrigin;
+      uvec3 corner = ScaleOrigin(origin, noiseOriginLevel - level, restOfOrigin);
+      vec3 inLattice = (place * fineness + rest) / size + restOfOrigin;
+      uint seed = HashOfSeed(uint(noiseSeed + i) + uint(level) * LEVEL_SEED);
+      sum += amplitude * share * EvaluateOctave(inLattice, corner, seed, bent);
+    }
+    power += amplitude * amplitude;
+    amplitude *= noiseGain;
+    fineness *= noiseLacunarity;
+  }
+  return sum * inversesqrt(power);
+}
+
+/// Noise of this fragment; `steered` is false where there is no direction, so no noise.
+float NoiseOfFragment(vec3 place, vec3 steering, vec3 steering2, vec3 bend, vec3 normal,
+  float inverseW, out bool steered)
+{
+  steered = false;
+  float pixel = noisePixel * inverseW;
+  float magnitude = length(steering);
+#ifdef NOISE_TENSORS
+  magnitude = sqrt(dot(steering, steering) + 2.0 * dot(steering2, steering2));
+#endif
+  // Longer than 1: a sample that is not finite has been marked so.
+  if (!(magnitude * noiseLongest > noiseMask) || magnitude > 2.0 || !(magnitude > 0.0))
+  {
+    return 0.0;
+  }
+  float strength = StrengthOf(magnitude * noiseLongest);
+  AxialMetric metric;
+#ifdef NOISE_TENSORS
+  if (!MetricFromTensor(steering, steering2, strength, metric))
+  {
+    return 0.0;
+  }
+  normal = normalize(cross(dFdx(place), dFdy(place)));
+#else
+  vec3 direction = steering / magnitude;
+  float length2 = dot(normal, normal);
+  if (length2 > 0.0)
+  {
+    normal *= inversesqrt(length2);
+    direction -= dot(direction, normal) * normal;
+    float inPlane = length(direction);
+    if (!(inPlane > 1e-5))
+    {
+      return 0.0;
+    }
+    direction /= inPlane;
+  }
+  metric = MetricFromVector(direction, normal, strength);
+#endif
+  steered = true;
+  vec3 curvature = noiseCurvature * bend;
+#ifdef NOISE_PIXELS
+  // Two lattices whose squared weights sum to 1, so that contrast stays; for most sizes one of them is 0.
+  float level = log2(max(pixel * noiseFeature, 1e-30));
+  float below = floor(level);
+  float turn = 1.5707963 * smoothstep(0.33, 0.67, level - below);
+  float noise = 0.0;
+  for (int i = 0; i < 2; ++i)
+  {
+    float share = i == 0 ? cos(turn) : sin(turn);
+    if (share > 1e-4)
+    {
+      int l = int(below) + i;
+      noise += share *
+        SteerableNoise(place, exp2(float(l)), l, pixel, metric, curvature, normal);
+    }
+  }
+  return noise;
+#else
+  return SteerableNoise(place, noiseFeature, 0, pixel, metric, curvature, normal);
+#endif
+}

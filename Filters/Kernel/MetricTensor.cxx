@@ -32,14 +32,14 @@ double Blend(double eigenvalue, double strength)
 
 EigenvalueRange VectorEigenvalues(const NoiseParameters& parameters, int dimension)
 {
-  const double along = parameters.MinimumEigenvalue / (parameters.Quality + 1);
+  const double along = parameters.GetAlongEigenvalue();
   const double across = (parameters.EigenvalueSum - along) / (dimension - 1) - 1e-4;
   return { along, std::max(along, across) };
 }
 
 EigenvalueRange SurfaceEigenvalues(const NoiseParameters& parameters)
 {
-  const double along = parameters.MinimumEigenvalue / (parameters.Quality + 1);
+  const double along = parameters.GetAlongEigenvalue();
   const double across = parameters.EigenvalueSum - along - SurfaceNormalEigenvalue - 1e-4;
   return { along, std::max(along, across) };
 }

@@ -28,7 +28,7 @@ struct EigenvalueRange
   double Across;
 };
 
-/// k = MinimumEigenvalue / (Quality + 1), b = (EigenvalueSum - k) / (N - 1) - 1e-4, never below k.
+/// k = GetAlongEigenvalue(), b = (EigenvalueSum - k) / (N - 1) - 1e-4, never below k.
 EigenvalueRange VectorEigenvalues(const NoiseParameters& parameters, int dimension);
 
 /// On a surface the normal takes 0.5 of the trace and the one direction across gets the rest.

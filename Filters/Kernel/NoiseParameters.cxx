@@ -26,6 +26,8 @@ void NoiseParameters::Validate() const
 {
   Require(this->FeatureSize > 0.0 && std::isfinite(this->FeatureSize), "FeatureSize",
     this->FeatureSize, "positive and finite");
+  Require(this->StreakLength >= 1.0 && this->StreakLength <= 20.0, "StreakLength",
+    this->StreakLength, "from 1 to 20");
   Require(this->Quality >= 0 && this->Quality <= 8, "Quality", this->Quality, "from 0 to 8");
   Require(this->MinimumEigenvalue >= 0.01 && this->MinimumEigenvalue <= 1.0, "MinimumEigenvalue",
     this->MinimumEigenvalue, "from 0.01 to 1");

@@ -9,6 +9,7 @@
 #ifndef NoiseParameters_h
 #define NoiseParameters_h
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -71,14 +72,22 @@ struct NoiseParameters
 {
   /// Side of a lattice cell in world units, > 0.
   double FeatureSize = 1.0;
-  /// 0 to 8: surflets reach Quality + 1 cells (Rice, supplementary, section 2).
+  /// Half-length of a streak in cells, [1, 20]; without LatticeWindow.
+  double StreakLength = 6.0;
+  /**
+   * Trace of the metric, [2, 16]. WeightSum needs 4 or less (supplementary, section 1.3). From about 4 on
+   * a flow along an axis leaves gaps between the rows of the lattice.
+   */
+  double EigenvalueSum = 3.2;
+  /**
+   * Rice's own model: a window over the axes of the lattice, and streaks as long as Quality and
+   * MinimumEigenvalue say. Without it only the metric bounds a surflet, alike in every direction.
+   */
+  bool LatticeWindow = false;
+  /// With LatticeWindow, 0 to 8: surflets reach Quality + 1 cells (ibid., section 2).
   int Quality = 4;
-  /// Smallest eigenvalue of the metric at Quality 0, (0, 1]; divided by Quality + 1 (ibid.).
+  /// With LatticeWindow: eigenvalue along the flow at Quality 0, (0, 1]; divided by Quality + 1 (ibid.).
   double MinimumEigenvalue = 0.5;
-  /// Trace of the metric, [2, 16]. WeightSum needs 4 or less (supplementary, section 1.3).
-  double EigenvalueSum = 4.0;
-  /// The window over the axes of the lattice; without it only the metric bounds a surflet.
-  bool LatticeWindow = true;
   /// Off: no fade by the metric's distance. With Strength 0 that is Kensler's isotropic noise.
   bool AnisotropicWeight = true;
 
@@ -95,7 +104,7 @@ struct NoiseParameters
 
   Normalization Normalize = Normalization::UnitVariance;
   Basis Surflet = Basis::Gradient;
-  /// Share of the corners that carry a streak, (0, 1].
+  /// How densely streaks lie, (0, 1]; see GetStreakProbability.
   double Density = 0.25;
 
   /// On: surflets travel along the flow, each on its own clock; off: still noise.
@@ -122,6 +131,23 @@ struct NoiseParameters
 
   /// Throws std::invalid_argument with the name of the first parameter that is out of range.
   void Validate() const;
+
+  /// k, the eigenvalue of the metric along the flow: a streak reaches 1/√k cells to either side.
+  double GetAlongEigenvalue() const
+  {
+    return this->LatticeWindow ? this->MinimumEigenvalue / (this->Quality + 1)
+                               : 1.0 / (this->StreakLength * this->StreakLength);
+  }
+
+  /**
+   * Probability that a corner carries a streak: Density of those that are 3 cells long, and of longer ones
+   * fewer, so that they cover the same area. With LatticeWindow Density itself.
+   */
+  double GetStreakProbability() const
+  {
+    return this->LatticeWindow ? this->Density
+                               : std::min(1.0, 3.0 * this->Density / this->StreakLength);
+  }
 };
 } // namespace steerable
 

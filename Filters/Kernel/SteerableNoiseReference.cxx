@@ -115,9 +115,10 @@ struct Octave
         const double profile = this->Metric.Degenerate
           ? 0.0
           : window * StreakProfile(-scaled) * FadeOf(p.Interpolant, across);
-        const bool on = HashToUnit(HashStream(hash, 2)) < p.Density;
+        const double probability = p.GetStreakProbability();
+        const bool on = HashToUnit(HashStream(hash, 2)) < probability;
         sums.Noise += on ? amplitude * profile : 0.0;
-        sums.Variance += p.Density * profile * profile;
+        sums.Variance += probability * profile * profile;
         sums.Weight += profile;
         break;
       }
@@ -162,7 +163,7 @@ struct Octave
       case Normalization::WeightSum:
         return sums.Weight > 0.0 ? sums.Noise / sums.Weight : 0.0;
       case Normalization::UnitVariance:
-        return sums.Noise / std::sqrt(sums.Variance + 1e-3);
+        return sums.Noise / std::sqrt(sums.Variance + VarianceFloor);
       case Normalization::None:
       default:
         return sums.Noise;

@@ -101,7 +101,7 @@ inline float VarianceShare(const NoiseParameters& p, int dimension)
     case Basis::Value:
       return 1.0f / 3.0f;
     case Basis::Streaks:
-      return static_cast<float>(p.Density);
+      return static_cast<float>(p.GetStreakProbability());
     case Basis::Gradient:
     default:
       return static_cast<float>(GradientVariance(p.Gradients, dimension));
@@ -118,7 +118,7 @@ WALK_INLINE V Normalized(const NoiseSetup& setup, int dimension, const Sums& sum
     case Normalization::UnitVariance:
     {
       const V share = Const(VarianceShare(setup.Parameters, dimension));
-      return hn::Div(sums.Noise, hn::Sqrt(hn::MulAdd(share, sums.Variance, Const(1e-3f))));
+      return hn::Div(sums.Noise, hn::Sqrt(hn::MulAdd(share, sums.Variance, Const(VarianceFloor))));
     }
     case Normalization::None:
     default:

@@ -1326,8 +1326,8 @@ private:
       }
       if (this->Params.Surflet == Basis::Streaks)
       {
-        const auto on =
-          hn::Lt(HashToUnit(HashStream(hash, 2)), Const(static_cast<float>(this->Params.Density)));
+        const auto on = hn::Lt(HashToUnit(HashStream(hash, 2)),
+          Const(static_cast<float>(this->Params.GetStreakProbability())));
         corner.Amplitude = hn::IfThenElseZero(on, corner.Amplitude);
       }
     }

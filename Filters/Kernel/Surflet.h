@@ -20,6 +20,12 @@ using Vector = Eigen::Matrix<double, N, 1>;
 
 constexpr double Pi = 3.14159265358979323846;
 
+/**
+ * Added to the variance that UnitVariance divides by, so that places which hardly a surflet reaches fade
+ * to 0 instead of showing the edge of one at full contrast.
+ */
+constexpr float VarianceFloor = 1e-3f;
+
 /// Largest |t| at which an interpolant is not 0: 2 for Kensler's wide one, else 1.
 inline double FadeSupport(Fade fade)
 {

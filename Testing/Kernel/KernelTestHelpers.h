@@ -21,6 +21,16 @@ namespace steerable
 {
 namespace testing
 {
+/// Rice's own model as he has it: the window over the lattice's axes, a trace of 4, and Quality.
+inline NoiseParameters PaperModel(int quality = 4)
+{
+  NoiseParameters parameters;
+  parameters.LatticeWindow = true;
+  parameters.EigenvalueSum = 4.0;
+  parameters.Quality = quality;
+  return parameters;
+}
+
 /// Samples at random places with random vectors, normals, tensors and curvatures.
 struct RandomSamples
 {

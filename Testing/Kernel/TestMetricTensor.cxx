@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /// The metric against the supplementary's own route to it, and its behaviour at the limits.
+#include "KernelTestHelpers.h"
 #include "MetricTensor.h"
 
 #include <Eigen/Eigenvalues>
@@ -17,6 +18,7 @@
 #include <string>
 
 using namespace steerable;
+using namespace steerable::testing;
 
 namespace
 {
@@ -75,8 +77,7 @@ void ExpectSupplementaryMetric()
   double largest = 0.0;
   for (int quality = 0; quality <= 8; ++quality)
   {
-    NoiseParameters parameters;
-    parameters.Quality = quality;
+    const NoiseParameters parameters = PaperModel(quality);
     for (int i = 0; i < 500; ++i)
     {
       const Vector<N> u = RandomVector<N>(random) * std::pow(10.0, i % 7 - 3);
@@ -124,8 +125,7 @@ void ExpectIsotropic(const AxialMetric<N>& metric, const std::string& what)
 template <int N>
 double LeastWeight(int quality, int directions, int samples, bool axes = false)
 {
-  NoiseParameters parameters;
-  parameters.Quality = quality;
+  const NoiseParameters parameters = PaperModel(quality);
   std::mt19937 random(11);
   double least = Infinity;
   const int side = 2 * quality + 2;
@@ -185,10 +185,9 @@ TEST(MetricTensor, HasTheEigenvaluesAskedFor)
     {
       for (int quality : { 0, 3, 8 })
       {
-        NoiseParameters parameters;
+        NoiseParameters parameters = PaperModel(quality);
         parameters.EigenvalueSum = sum;
         parameters.MinimumEigenvalue = minimum;
-        parameters.Quality = quality;
         const Vector<3> u = RandomVector<3>(random).normalized();
         const AxialMetric<3> metric = MetricFromVector<3>(parameters, u);
         const double k = minimum / (quality + 1);
@@ -206,11 +205,50 @@ TEST(MetricTensor, HasTheEigenvaluesAskedFor)
   }
 }
 
+TEST(MetricTensor, HasTheLengthAskedForWithoutTheWindow)
+{
+  for (double length : { 1.0, 2.5, 6.0, 20.0 })
+  {
+    for (double sum : { 2.0, 3.2, 16.0 })
+    {
+      NoiseParameters parameters;
+      parameters.StreakLength = length;
+      parameters.EigenvalueSum = sum;
+      parameters.Quality = 8; // of no account
+      parameters.MinimumEigenvalue = 0.01;
+      const double k = 1.0 / (length * length);
+      EXPECT_DOUBLE_EQ(parameters.GetAlongEigenvalue(), k);
+      const AxialMetric<2> inPlane = MetricFromVector<2>(parameters, Vector<2>::UnitY());
+      EXPECT_NEAR(1.0 / std::sqrt(inPlane.Along), length, 1e-12);
+      EXPECT_NEAR(inPlane.Across, std::max(k, sum - k - 1e-4), 1e-12);
+      const AxialMetric<3> inSpace = MetricFromVector<3>(parameters, Vector<3>::UnitY());
+      EXPECT_NEAR(inSpace.Along, k, 1e-12);
+      EXPECT_NEAR(inSpace.Across, std::max(k, (sum - k) / 2.0 - 1e-4), 1e-12);
+      const AxialMetric<3> surface =
+        MetricFromSurfaceVector(parameters, Vector<3>::UnitY(), Vector<3>::UnitX());
+      EXPECT_NEAR(surface.Along, k, 1e-12);
+      EXPECT_NEAR(surface.Across, std::max(k, sum - k - 0.5 - 1e-4), 1e-12);
+    }
+  }
+}
+
+TEST(MetricTensor, CountsStreaksByTheirArea)
+{
+  NoiseParameters parameters;
+  EXPECT_DOUBLE_EQ(parameters.GetStreakProbability(), 0.125) << "Density 0.25, StreakLength 6";
+  parameters.StreakLength = 3.0;
+  EXPECT_DOUBLE_EQ(parameters.GetStreakProbability(), 0.25);
+  parameters.Density = 0.8;
+  parameters.StreakLength = 1.0;
+  EXPECT_EQ(parameters.GetStreakProbability(), 1.0) << "no more than every corner";
+  EXPECT_EQ(PaperModel(8).GetStreakProbability(), 0.25) << "the paper's model: share of corners";
+}
+
 TEST(MetricTensor, BlendsEigenvaluesByStrength)
 {
   const Vector<2> u(3.0, -4.0); // length 5
   NoiseParameters parameters;
-  parameters.Quality = 1;
+  parameters.StreakLength = 2.0;
   const Matrix<2> full = MetricFromVector<2>(parameters, u).ToMatrix();
   for (double strength : { 0.0, 0.25, 0.7, 1.0 })
   {
@@ -253,8 +291,7 @@ TEST(MetricTensor, KnowsSurfaces)
   std::mt19937 random(5);
   for (int quality : { 0, 1, 4, 8 })
   {
-    NoiseParameters parameters;
-    parameters.Quality = quality;
+    const NoiseParameters parameters = PaperModel(quality);
     const double k = 0.5 / (quality + 1);
     for (int i = 0; i < 100; ++i)
     {
@@ -297,8 +334,7 @@ TEST(MetricTensor, GivesTensorsOfVectorsTheMetricOfTheVector)
   std::mt19937 random(9);
   for (int quality : { 0, 2, 8 })
   {
-    NoiseParameters parameters;
-    parameters.Quality = quality;
+    const NoiseParameters parameters = PaperModel(quality);
     for (int i = 0; i < 300; ++i)
     {
       const Vector<2> u2 = RandomVector<2>(random) * std::pow(10.0, i % 9 - 4);
@@ -320,8 +356,7 @@ template <int N>
 void ExpectTensorRemap()
 {
   std::mt19937 random(13);
-  NoiseParameters parameters;
-  parameters.Quality = 2;
+  const NoiseParameters parameters = PaperModel(2);
   const EigenvalueRange range = VectorEigenvalues(parameters, N);
   for (int i = 0; i < 300; ++i)
   {
@@ -416,8 +451,7 @@ TEST(MetricTensor, DoesNotMindTheScaleOfItsInput)
 
 TEST(MetricTensor, BendsUpToTheRadiusOfCurvature)
 {
-  NoiseParameters parameters;
-  parameters.Quality = 8;
+  const NoiseParameters parameters = PaperModel(8);
   const AxialMetric<3> straight = MetricFromVector<3>(parameters, Vector<3>::UnitX());
   for (double curvature : { 0.0, 0.05, 0.2, 0.5, 0.9, 1.0, 1.5, 100.0, 1e12 })
   {

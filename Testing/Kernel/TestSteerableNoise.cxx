@@ -28,6 +28,13 @@ constexpr double CurvedImageBound = 2.5e-6;
 /// On bent surfaces levels without fused products round a little more.
 constexpr double BentSurfaceBound = 2.2e-6;
 
+/**
+ * Variants reach farther, fall off faster or leave places with hardly a surflet, whose noise is divided
+ * by no more than the root of 1e-3: rounding shows more than with the defaults.
+ */
+constexpr double VariantBound = 4e-6;
+constexpr double LooseBound = 7e-6;
+
 const char* NameOf(Steering steering)
 {
   return steering == Steering::Vectors ? "vectors"
@@ -71,55 +78,72 @@ void ExpectReference(const std::string& family, const NoiseParameters& parameter
     const SimdLevel level(target);
     const std::vector<float> fast = FastNoise<N>(parameters, samples, steering);
     const double difference = LargestDifference(fast, slow);
-    EXPECT_LE(difference, bound) << family << ": " << N << "D, Quality " << parameters.Quality
-                                 << ", " << NameOf(steering) << ", " << hwy::TargetName(target);
+    EXPECT_LE(difference, bound) << family << ": " << N << "D, " << NameOf(steering) << ", "
+                                 << hwy::TargetName(target);
     DifferenceTable::Add(family, difference);
     best = best.empty() ? fast : best;
     EXPECT_LE(LargestDifference(fast, best), bound) << family << ", " << hwy::TargetName(target);
   }
 }
 
+/// All ways to steer, straight and bent. `model` names the parameters; `slow`: fewer combinations.
+template <int N>
+void ExpectReferenceOfModel(const std::string& model, NoiseParameters parameters, int count,
+  bool slow, unsigned seed, double bound)
+{
+  const bool unit = parameters.Normalize == Normalization::UnitVariance;
+  for (Steering steering : { Steering::Vectors, Steering::Tensors, Steering::Normals })
+  {
+    for (double curvature : { 0.0, 0.15, 0.6 })
+    {
+      if ((steering == Steering::Normals && N == 2) || (slow && curvature == 0.6))
+      {
+        continue;
+      }
+      parameters.FollowCurvature = curvature > 0.0;
+      const std::string family = std::to_string(N) + "D " +
+        (unit                                                  ? "UnitVariance "
+            : parameters.Normalize == Normalization::None ? "None "
+                                                          : "WeightSum ") +
+        model + " " + NameOf(steering) + (curvature > 0.0 ? " curved" : "");
+      const bool bentSurface = unit && steering == Steering::Normals && parameters.FollowCurvature;
+      ExpectReference<N>(family, parameters, RandomSamples(count, 1000.0, curvature, seed), steering,
+        bentSurface ? std::max(bound, BentSurfaceBound) : bound);
+    }
+  }
+}
+
+/// Rice's own model.
 template <int N>
 void ExpectReferenceAtAllQualities(Normalization normalization, double bound = Bound)
 {
   for (int quality : { 0, 1, 2, 4, 8 })
   {
-    NoiseParameters parameters;
-    parameters.Quality = quality;
+    NoiseParameters parameters = PaperModel(quality);
     parameters.Normalize = normalization;
     const bool unit = normalization == Normalization::UnitVariance;
     // The reference visits the whole box: 9000 corners in 3D at Quality 8.
     const int count = unit ? 2000 : N == 3 && quality == 8 ? 200 : 1000;
-    for (Steering steering : { Steering::Vectors, Steering::Tensors, Steering::Normals })
-    {
-      for (double curvature : { 0.0, 0.15, 0.6 })
-      {
-        const bool slow = !unit || (N == 3 && quality == 8);
-        if ((steering == Steering::Normals && N == 2) || (slow && curvature == 0.6))
-        {
-          continue;
-        }
-        parameters.FollowCurvature = curvature > 0.0;
-        const std::string family = std::to_string(N) + "D " +
-          (unit                                      ? "UnitVariance "
-              : normalization == Normalization::None ? "None "
-                                                     : "WeightSum ") +
-          std::to_string(quality) + " " + NameOf(steering) + (curvature > 0.0 ? " curved" : "");
-        const bool bentSurface =
-          unit && steering == Steering::Normals && parameters.FollowCurvature;
-        ExpectReference<N>(family, parameters, RandomSamples(count, 1000.0, curvature, 1 + quality),
-          steering, bentSurface ? BentSurfaceBound : bound);
-      }
-    }
+    ExpectReferenceOfModel<N>("Quality " + std::to_string(quality), parameters, count,
+      !unit || (N == 3 && quality == 8), 1 + quality, bound);
   }
 }
 
-/**
- * Variants reach farther, fall off faster or leave places with hardly a surflet, whose noise is divided
- * by no more than the root of 1e-3: rounding shows more than with the defaults.
- */
-constexpr double VariantBound = 4e-6;
-constexpr double LooseBound = 7e-6;
+/// Without the window; the default length is held to the same bound.
+template <int N>
+void ExpectReferenceAtAllLengths(Normalization normalization, double bound = Bound)
+{
+  for (int length : { 1, 3, 6, 10, 20 })
+  {
+    NoiseParameters parameters;
+    parameters.StreakLength = length;
+    parameters.Normalize = normalization;
+    const int count = N == 2 ? 2000 : length <= 6 ? 500 : length <= 10 ? 100 : 30;
+    ExpectReferenceOfModel<N>("StreakLength " + std::to_string(length), parameters, count,
+      normalization != Normalization::UnitVariance || N == 3, 1 + length,
+      length <= 6 ? bound : std::max(bound, LooseBound));
+  }
+}
 
 /// A change of the defaults, and what it may cost in precision.
 struct Variant
@@ -217,21 +241,36 @@ const std::vector<Variant>& Variants()
     { "EigenvalueSum 2", [](P& p) { p.EigenvalueSum = 2.0; } },
     { "EigenvalueSum 8", [](P& p) { p.EigenvalueSum = 8.0; }, LooseBound },
     { "EigenvalueSum 16", [](P& p) { p.EigenvalueSum = 16.0; }, LooseBound },
-    { "MinimumEigenvalue 0.02", [](P& p) { p.MinimumEigenvalue = 0.02; }, LooseBound },
-    { "MinimumEigenvalue 1", [](P& p) { p.MinimumEigenvalue = 1.0; } },
-    { "LatticeWindow off", [](P& p) { p.LatticeWindow = false; } },
-    { "LatticeWindow off, Quality 0, k = 1",
+    { "MinimumEigenvalue 0.02",
+      [](P& p)
+      {
+        p.LatticeWindow = true;
+        p.MinimumEigenvalue = 0.02;
+      },
+      LooseBound },
+    { "MinimumEigenvalue 1",
+      [](P& p)
+      {
+        p.LatticeWindow = true;
+        p.MinimumEigenvalue = 1.0;
+      } },
+    { "StreakLength 1, None",
       [](P& p)
       {
         p.LatticeWindow = false;
-        p.Quality = 0;
-        p.MinimumEigenvalue = 1.0;
+        p.StreakLength = 1.0;
         p.Normalize = Normalization::None;
       } },
-    { "AnisotropicWeight off", [](P& p) { p.AnisotropicWeight = false; } },
+    { "AnisotropicWeight off",
+      [](P& p)
+      {
+        p.LatticeWindow = true;
+        p.AnisotropicWeight = false;
+      } },
     { "AnisotropicWeight off, None",
       [](P& p)
       {
+        p.LatticeWindow = true;
         p.AnisotropicWeight = false;
         p.Normalize = Normalization::None;
         p.Quality = 0;
@@ -288,7 +327,7 @@ const std::vector<Variant>& Variants()
         p.Surflet = Basis::Streaks;
         p.Grid = Lattice::Simplicial;
         p.LatticeWindow = false;
-        p.Quality = 1;
+        p.StreakLength = 2.0;
       } },
     { "Wide, Motion, no window",
       [](P& p)
@@ -297,11 +336,12 @@ const std::vector<Variant>& Variants()
         p.LatticeWindow = false;
         p.Motion = true;
         p.Phase = 0.6;
-        p.Quality = 1;
+        p.StreakLength = 2.0;
       } },
     { "no AnisotropicWeight, Radial, Jittered, Perlin",
       [](P& p)
       {
+        p.LatticeWindow = true;
         p.AnisotropicWeight = false;
         p.Window = Falloff::Radial;
         p.Grid = Lattice::Jittered;
@@ -344,13 +384,18 @@ void ExpectReferenceOfVariants()
         {
           continue;
         }
-        NoiseParameters parameters;
-        parameters.Quality = 2;
-        parameters.FollowCurvature = curvature > 0.0;
-        variant.Change(parameters);
-        const double perWorldUnit = curvature / parameters.FeatureSize;
-        ExpectReference<N>(std::to_string(N) + "D variant " + variant.Name, parameters,
-          RandomSamples(N == 2 ? 400 : 80, 50.0, perWorldUnit, 5), steering, variant.Bound);
+        for (NoiseParameters parameters : { NoiseParameters(), PaperModel(2) })
+        {
+          parameters.FollowCurvature = curvature > 0.0;
+          const bool paper = parameters.LatticeWindow;
+          variant.Change(parameters);
+          const double perWorldUnit = curvature / parameters.FeatureSize;
+          // Without the window the reference's box is five times as large in space.
+          ExpectReference<N>(
+            std::to_string(N) + "D variant " + variant.Name + (paper ? ", paper's model" : ""),
+            parameters, RandomSamples(N == 2 ? 400 : paper ? 80 : 20, 50.0, perWorldUnit, 5),
+            steering, variant.Bound);
+        }
       }
     }
   }
@@ -483,18 +528,23 @@ int CountDifferent(const std::vector<float>& a, const std::vector<float>& b)
 /// The parameters whose bits are compared: the fast loops and the variants' own.
 std::vector<NoiseParameters> ParametersOfSplits()
 {
-  std::vector<NoiseParameters> all(6);
-  all[1].Quality = 0;
-  all[1].FollowCurvature = false;
-  all[1].Normalize = Normalization::None;
-  all[2].Quality = 8;
-  all[3].Motion = true;
-  all[3].Phase = 0.3;
-  all[3].Grid = Lattice::Jittered;
-  all[4].Octaves = 3;
-  all[4].Normalize = Normalization::WeightSum;
-  all[5].Surflet = Basis::Streaks;
-  all[5].Period = { 4, 4, 4 };
+  std::vector<NoiseParameters> all;
+  for (const NoiseParameters& model : { NoiseParameters(), PaperModel() })
+  {
+    all.insert(all.end(), 4, model);
+    NoiseParameters* const four = all.data() + all.size() - 4;
+    four[1].Motion = true;
+    four[1].Phase = 0.3;
+    four[1].Grid = Lattice::Jittered;
+    four[2].Octaves = 3;
+    four[2].Normalize = Normalization::WeightSum;
+    four[3].Surflet = Basis::Streaks;
+    four[3].Period = { 4, 4, 4 };
+  }
+  all.push_back(PaperModel(0));
+  all.back().FollowCurvature = false;
+  all.back().Normalize = Normalization::None;
+  all.push_back(PaperModel(8));
   return all;
 }
 
@@ -607,17 +657,20 @@ CornerCounts CountCorners(const NoiseParameters& parameters)
     const Matrix<N> G =
       MetricFromVector<N>(parameters, samples.Get<N>(samples.Vectors, i)).ToMatrix();
     const Vector<N> p = samples.GetPosition<N>(i);
-    const int side = 2 * parameters.Quality + 2;
+    const bool window = parameters.LatticeWindow;
+    const int reach =
+      window ? parameters.Quality : static_cast<int>(std::ceil(parameters.StreakLength));
+    const int side = 2 * reach + 2;
     const int corners = N == 2 ? side * side : side * side * side;
     for (int corner = 0; corner < corners; ++corner)
     {
       Vector<N> v;
       for (int axis = 0, rest = corner; axis < N; ++axis, rest /= side)
       {
-        v[axis] = std::floor(p[axis]) + rest % side - parameters.Quality - p[axis];
+        v[axis] = std::floor(p[axis]) + rest % side - reach - p[axis];
       }
       counts.Inside +=
-        v.dot(G * v) < 1.0 && v.cwiseAbs().maxCoeff() < parameters.Quality + 1 ? 1.0 : 0.0;
+        v.dot(G * v) < 1.0 && (!window || v.cwiseAbs().maxCoeff() < reach + 1) ? 1.0 : 0.0;
     }
   }
   EvaluationCounts found;
@@ -632,12 +685,16 @@ TEST(SteerableNoise, EqualsTheReferenceInThePlane)
 {
   ExpectReferenceAtAllQualities<2>(Normalization::UnitVariance);
   ExpectReferenceAtAllQualities<2>(Normalization::None);
+  ExpectReferenceAtAllLengths<2>(Normalization::UnitVariance);
+  ExpectReferenceAtAllLengths<2>(Normalization::None);
 }
 
 TEST(SteerableNoise, EqualsTheReferenceInSpace)
 {
   ExpectReferenceAtAllQualities<3>(Normalization::UnitVariance);
   ExpectReferenceAtAllQualities<3>(Normalization::None);
+  ExpectReferenceAtAllLengths<3>(Normalization::UnitVariance);
+  ExpectReferenceAtAllLengths<3>(Normalization::None);
 }
 
 TEST(SteerableNoise, EqualsTheReferenceDividedByWeights)
@@ -646,6 +703,8 @@ TEST(SteerableNoise, EqualsTheReferenceDividedByWeights)
   constexpr double bound = 1e-5;
   ExpectReferenceAtAllQualities<2>(Normalization::WeightSum, bound);
   ExpectReferenceAtAllQualities<3>(Normalization::WeightSum, bound);
+  ExpectReferenceAtAllLengths<2>(Normalization::WeightSum, bound);
+  ExpectReferenceAtAllLengths<3>(Normalization::WeightSum, bound);
 }
 
 TEST(SteerableNoise, EqualsTheReferenceForVariantsInThePlane)
@@ -665,16 +724,17 @@ TEST(SteerableNoise, EqualsTheReferenceFarFromTheOrigin)
   {
     for (bool period : { false, true })
     {
-      NoiseParameters parameters;
-      parameters.Quality = 1;
-      parameters.FollowCurvature = false;
-      if (period)
+      for (NoiseParameters parameters : { NoiseParameters(), PaperModel(1) })
       {
-        parameters.Period = { 1000, 999, 77 };
+        parameters.FollowCurvature = false;
+        if (period)
+        {
+          parameters.Period = { 1000, 999, 77 };
+        }
+        const RandomSamples samples(parameters.LatticeWindow ? 500 : 100, extent, 0.0);
+        ExpectReference<2>("2D far from the origin", parameters, samples, Steering::Vectors);
+        ExpectReference<3>("3D far from the origin", parameters, samples, Steering::Vectors);
       }
-      const RandomSamples samples(500, extent, 0.0);
-      ExpectReference<2>("2D far from the origin", parameters, samples, Steering::Vectors);
-      ExpectReference<3>("3D far from the origin", parameters, samples, Steering::Vectors);
     }
   }
 }
@@ -703,14 +763,12 @@ TEST(SteerableNoise, HasTheLevelsOfTheMachine)
 
 TEST(SteerableNoise, EqualsTheReferenceOnImages)
 {
-  for (int quality : { 0, 4 })
+  for (NoiseParameters parameters : { NoiseParameters(), PaperModel(0), PaperModel(4) })
   {
     for (bool curved : { false, true })
     {
       for (Normalization normalization : { Normalization::UnitVariance, Normalization::None })
       {
-        NoiseParameters parameters;
-        parameters.Quality = quality;
         parameters.FollowCurvature = curved;
         parameters.Normalize = normalization;
         parameters.FeatureSize = 1.5;
@@ -725,9 +783,8 @@ TEST(SteerableNoise, EqualsTheReferenceOnImages)
 
 TEST(SteerableNoise, EqualsTheReferenceOnUnusualImages)
 {
-  NoiseParameters parameters;
+  NoiseParameters parameters = PaperModel(2);
   parameters.FeatureSize = 1.5;
-  parameters.Quality = 2;
   ImageGrid grid = SmallGrid(2);
   // More than a cell per sample, and backwards: the rows of gradients do not serve.
   grid.Spacing = { 2.0, 1.1, 1.0 };
@@ -759,13 +816,15 @@ TEST(SteerableNoise, EqualsTheReferenceOnUnusualImages)
   // Variants, octaves and periods walk lane by lane.
   for (std::size_t i = 0; i < Variants().size(); ++i)
   {
-    NoiseParameters changed = parameters;
-    Variants()[i].Change(changed);
-    changed.FeatureSize = 1.5;
-    grid = SmallGrid(2);
-    grid.Dimensions = { 21, 9, 1 };
-    ExpectReferenceOfImages<2>(
-      changed, grid, Swirl, std::string("2D image of ") + Variants()[i].Name, Variants()[i].Bound);
+    for (NoiseParameters changed : { NoiseParameters(), parameters })
+    {
+      Variants()[i].Change(changed);
+      changed.FeatureSize = 1.5;
+      grid = SmallGrid(2);
+      grid.Dimensions = { 21, 9, 1 };
+      ExpectReferenceOfImages<2>(changed, grid, Swirl,
+        std::string("2D image of ") + Variants()[i].Name, Variants()[i].Bound);
+    }
   }
   // Oblique axes in space.
   parameters.Grid = Lattice::Simplicial;
@@ -845,9 +904,8 @@ TEST(SteerableNoise, HasTheSameBitsAloneAndAmongItsNeighbours)
   {
     parameters.FeatureSize = 1.0;
   }
-  NoiseParameters other;
+  NoiseParameters other = PaperModel(8);
   other.FeatureSize = 1.0;
-  other.Quality = 8;
   all.push_back(other);
   other.FollowCurvature = false;
   all.push_back(other);
@@ -869,8 +927,7 @@ TEST(SteerableNoise, HasTheSameBitsAloneAndAmongItsNeighbours)
   // Long and fast ones, of which much reaches far.
   NoiseParameters far;
   far.FeatureSize = 1.0;
-  far.LatticeWindow = false;
-  far.MinimumEigenvalue = 0.02;
+  far.StreakLength = 16.0;
   far.EigenvalueSum = 8.0;
   far.Normalize = Normalization::None;
   all.push_back(far);
@@ -903,9 +960,6 @@ TEST(SteerableNoise, HasTheSameBitsAloneHoweverFarItsNeighboursAre)
   RandomSamples samples(count, 30.0, 0.0, 4);
   std::vector<std::size_t> one(count);
   std::iota(one.begin(), one.end(), 0);
-  NoiseParameters parameters;
-  parameters.FeatureSize = 1.0;
-  parameters.Quality = 8;
   for (const double spacing : { 1.0, 3.3, 8.1, 20.0, 57.0, 150.0, 1e5 })
   {
     for (std::size_t i = 0; i < 3 * count; ++i)
@@ -915,14 +969,18 @@ TEST(SteerableNoise, HasTheSameBitsAloneHoweverFarItsNeighboursAre)
       samples.Positions[i] = static_cast<double>(i / 3) * spacing * u[i % 3];
       samples.Curvature[i] = 0.0f;
     }
-    EXPECT_EQ(CountDifferent(
-                SplitNoise<2>(parameters, samples, one), SplitNoise<2>(parameters, samples, {})),
-      0)
-      << spacing;
-    EXPECT_EQ(CountDifferent(
-                SplitNoise<3>(parameters, samples, one), SplitNoise<3>(parameters, samples, {})),
-      0)
-      << spacing;
+    for (NoiseParameters parameters : { NoiseParameters(), PaperModel(8) })
+    {
+      parameters.FeatureSize = 1.0;
+      EXPECT_EQ(CountDifferent(
+                  SplitNoise<2>(parameters, samples, one), SplitNoise<2>(parameters, samples, {})),
+        0)
+        << spacing;
+      EXPECT_EQ(CountDifferent(
+                  SplitNoise<3>(parameters, samples, one), SplitNoise<3>(parameters, samples, {})),
+        0)
+        << spacing;
+    }
   }
 }
 
@@ -1018,15 +1076,13 @@ TEST(SteerableNoise, HasTheSameBitsInPieces)
 
 TEST(SteerableNoise, HasTheSameStatisticsFarFromTheOrigin)
 {
-  const auto deviationAt = [](double origin, int quality)
+  const auto deviationAt = [](double origin, NoiseParameters parameters)
   {
     ImageGrid grid;
     grid.Origin = { origin, -origin, 0.0 };
     grid.Spacing = { 0.5, 0.5, 1.0 };
     grid.Dimensions = { 640, 640, 1 };
-    NoiseParameters parameters;
     parameters.FeatureSize = 2.0;
-    parameters.Quality = quality;
     const std::vector<float> noise = ImageNoise(parameters, 2, grid,
       SampleVectors(grid, [](const Eigen::Vector3d&) { return Eigen::Vector3d(0.8, 0.6, 0.0); }));
     double sum = 0.0;
@@ -1040,12 +1096,12 @@ TEST(SteerableNoise, HasTheSameStatisticsFarFromTheOrigin)
     EXPECT_LE(std::abs(sum / count), 0.03);
     return std::sqrt(squares / count - sum / count * sum / count);
   };
-  for (int quality : { 0, 4 })
+  for (const NoiseParameters& model : { NoiseParameters(), PaperModel(0), PaperModel(4) })
   {
-    const double here = deviationAt(0.0, quality);
+    const double here = deviationAt(0.0, model);
     for (double origin : { 5e6, -5e6, 1e9 })
     {
-      const double there = deviationAt(origin, quality);
+      const double there = deviationAt(origin, model);
       std::printf("standard deviation at 0 and at %.0e: %.4f, %.4f\n", origin, here, there);
       EXPECT_NEAR(there / here, 1.0, 0.02) << origin;
     }
@@ -1059,8 +1115,7 @@ TEST(SteerableNoise, VisitsTheCornersOfTheEllipsoidOnly)
     { 4, { 5.0, 6.9 } }, { 8, { 6.7, 9.0 } } };
   for (const auto& [quality, expected] : table)
   {
-    NoiseParameters parameters;
-    parameters.Quality = quality;
+    NoiseParameters parameters = PaperModel(quality);
     parameters.FollowCurvature = false;
     const CornerCounts counts[2] = { CountCorners<2>(parameters), CountCorners<3>(parameters) };
     for (int i = 0; i < 2; ++i)
@@ -1073,9 +1128,24 @@ TEST(SteerableNoise, VisitsTheCornersOfTheEllipsoidOnly)
       EXPECT_LE(counts[i].Visited, 1.01 * counts[i].Inside) << quality;
     }
   }
+  // Without the window all of the ellipsoid: its area and its volume, in cells.
+  NoiseParameters whole;
+  whole.FollowCurvature = false;
+  const double k = whole.GetAlongEigenvalue();
+  const CornerCounts inPlane = CountCorners<2>(whole);
+  const CornerCounts inSpace = CountCorners<3>(whole);
+  std::printf("corners per sample with the defaults: %.2f in the plane, %.2f in space\n",
+    inPlane.Visited, inSpace.Visited);
+  EXPECT_NEAR(inPlane.Inside, Pi / std::sqrt(k * VectorEigenvalues(whole, 2).Across), 0.1);
+  EXPECT_NEAR(
+    inSpace.Inside, 4.0 / 3.0 * Pi / std::sqrt(k) / VectorEigenvalues(whole, 3).Across, 0.2);
+  for (const CornerCounts& counts : { inPlane, inSpace })
+  {
+    EXPECT_GE(counts.Visited, counts.Inside);
+    EXPECT_LE(counts.Visited, 1.01 * counts.Inside);
+  }
   // Unnormalised Quality 0 takes the corners of the cell as they are.
-  NoiseParameters cell;
-  cell.Quality = 0;
+  NoiseParameters cell = PaperModel(0);
   cell.FollowCurvature = false;
   cell.Normalize = Normalization::None;
   EXPECT_EQ(CountCorners<2>(cell).Visited, 4.0);
@@ -1090,12 +1160,10 @@ TEST(SteerableNoise, GivesFiniteNoiseWithoutADirection)
     { 1, -infinity, 2 }, { -0.0f, 0, -0.0f } };
   for (double curvature : { 0.0, 0.3 })
   {
-    for (int quality : { 0, 4 })
+    for (NoiseParameters parameters : { NoiseParameters(), PaperModel(0), PaperModel(4) })
     {
-      NoiseParameters parameters;
-      parameters.Quality = quality;
       parameters.FollowCurvature = curvature > 0.0;
-      RandomSamples samples(600, 30.0, curvature, 8);
+      RandomSamples samples(parameters.LatticeWindow ? 600 : 300, 30.0, curvature, 8);
       const std::vector<float> healthy = FastNoise<3>(parameters, samples, Steering::Vectors);
       for (int i = 0; i < 60; ++i)
       {
@@ -1160,8 +1228,7 @@ TEST(SteerableNoise, GivesFiniteNoiseWithoutADirectionOnImages)
 
 TEST(SteerableNoise, NeighboursWithoutADirectionChangeNoBits)
 {
-  NoiseParameters parameters;
-  parameters.Quality = 0;
+  NoiseParameters parameters = PaperModel(0);
   parameters.FollowCurvature = false;
   parameters.Normalize = Normalization::None;
   RandomSamples samples(600, 30.0, 0.0, 4);
@@ -1387,6 +1454,9 @@ TEST(SteerableNoise, ValidatesItsParameters)
     { "FeatureSize", [](P& p) { p.FeatureSize = -1.0; } },
     { "FeatureSize", [=](P& p) { p.FeatureSize = nan; } },
     { "FeatureSize", [=](P& p) { p.FeatureSize = infinity; } },
+    { "StreakLength", [](P& p) { p.StreakLength = 0.99; } },
+    { "StreakLength", [](P& p) { p.StreakLength = 20.5; } },
+    { "StreakLength", [=](P& p) { p.StreakLength = nan; } },
     { "Quality", [](P& p) { p.Quality = -1; } },
     { "Quality", [](P& p) { p.Quality = 9; } },
     { "MinimumEigenvalue", [](P& p) { p.MinimumEigenvalue = 0.0; } },
@@ -1478,6 +1548,7 @@ TEST(SteerableNoise, ValidatesItsParameters)
   EXPECT_NO_THROW(P().Validate());
   // The ends of the ranges belong to them.
   const std::vector<std::function<void(P&)>> accepted = { [](P& p) { p.Quality = 0; },
+    [](P& p) { p.StreakLength = 1.0; }, [](P& p) { p.StreakLength = 20.0; },
     [](P& p) { p.Quality = 8; }, [](P& p) { p.MinimumEigenvalue = 1.0; },
     [](P& p) { p.EigenvalueSum = 2.0; }, [](P& p) { p.EigenvalueSum = 16.0; },
     [](P& p) { p.Strength = 0.0; }, [](P& p) { p.Density = 1.0; }, [](P& p) { p.Speed = -4.0; },

@@ -8,6 +8,7 @@ uniform int noiseColorMode;        // vtkSteerableNoiseMapper::ColorModeType
 uniform float noiseIntensity;
 uniform float noiseContrast;
 uniform vec4 noiseMaskColor;       // of what shows no noise; alpha 0: the surface's own
+uniform vec2 noiseWhite;           // ambient and diffuse light of a white surface
 
 /// Noise of unit variance as a grey value in [0, 1]; `middle` is that of 0.
 float GreyOf(float noise, float middle)

@@ -265,6 +265,14 @@ public:
    */
   bool SetOptionsFrom(vtkSteerableNoiseFilter* filter);
 
+  /**
+   * Diagonal of the bounds and length of the longest vector over all ranks, from which automatic values come; 0,
+   * the default: the mapper's own input is all there is.
+   */
+  void SetSharedExtremes(double diagonal, double longest);
+
+  void Render(vtkRenderer* renderer, vtkActor* actor) override;
+
   ///@{
   /// The superclass's, but translucent with OPACITY.
   bool HasOpaqueGeometry() override;
@@ -285,6 +293,9 @@ protected:
 #else
   vtkCompositeMapperHelper2* CreateHelper() override;
 #endif
+
+  /// Finds or computes what steers the noise of each block of the input.
+  void FindFields();
 
 private:
   vtkSteerableNoiseMapper(const vtkSteerableNoiseMapper&) = delete;

@@ -1,0 +1,729 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vtkSteerableNoiseMapper.h"
+
+#include "NoiseShader.h"
+#include "SurfaceFields.h"
+
+#include "vtkActor.h"
+#include "vtkAlgorithm.h"
+#include "vtkBoundingBox.h"
+#include "vtkCellArray.h"
+#include "vtkCompositeDataIterator.h"
+#include "vtkCompositeDataSet.h"
+#include "vtkDataArray.h"
+#include "vtkFloatArray.h"
+#include "vtkHardwareSelector.h" // vtkCompositeMapperHelper2.h wants it first
+#include "vtkInformation.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkOpenGLBufferObject.h"
+#include "vtkOpenGLCellToVTKCellMap.h"
+#include "vtkOpenGLHelper.h"
+#include "vtkOpenGLRenderWindow.h"
+#include "vtkOpenGLVertexBufferObject.h"
+#include "vtkOpenGLVertexBufferObjectGroup.h"
+#include "vtkPolyData.h"
+#include "vtkPoints.h"
+#include "vtkProperty.h"
+#include "vtkRenderer.h"
+#include "vtkShader.h"
+#include "vtkShaderProgram.h"
+#include "vtkSmartPointer.h"
+#include "vtkSteerableNoiseFilter.h"
+#include "vtkTextureObject.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+// VTK 9.3 gave the helper that draws all blocks another name and its own class for what belongs to a block.
+#if VTK_MAJOR_VERSION > 9 || (VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION >= 3)
+#include "vtkOpenGLBatchedPolyDataMapper.h"
+#include "vtkOpenGLCompositePolyDataMapperDelegator.h"
+using HelperSuperclass = vtkOpenGLBatchedPolyDataMapper;
+#define STEERABLENOISE_DELEGATOR
+#else
+#include "vtkCompositeMapperHelper2.h"
+using HelperSuperclass = vtkCompositeMapperHelper2;
+#endif
+
+/// Options, and what was found in the input.
+struct vtkSteerableNoiseMapper::Internals
+{
+  struct Block
+  {
+    noise::SurfaceFields Fields;
+    bool PerCell = false;
+    vtkMTimeType Time = 0;
+  };
+
+  noise::ShaderOptions Options;
+  noise::ShaderVariant Variant;
+  vtkTimeStamp VariantTime;
+  vtkTimeStamp PerCellTime;
+  std::map<vtkPolyData*, Block> Blocks;
+  bool AnyNoise = false;
+  double OwnDiagonal = 0.0;
+  double OwnLongest = 0.0;
+  /// Over all ranks; 0: the mapper's own.
+  double SharedDiagonal = 0.0;
+  double SharedLongest = 0.0;
+  /// Input and choice of the last warning that there is no array.
+  vtkMTimeType WarningTime = 0;
+
+  const Block* Find(vtkPolyData* data) const
+  {
+    const auto found = this->Blocks.find(data);
+    return found != this->Blocks.end() && found->second.Fields.Steering ? &found->second : nullptr;
+  }
+
+  /// The kernel's parameters with automatic values filled in.
+  void Resolve()
+  {
+    steerable::NoiseParameters& model = this->Options.Model;
+    const double diagonal = this->SharedDiagonal > 0.0 ? this->SharedDiagonal : this->OwnDiagonal;
+    const double longest = this->SharedLongest > 0.0 ? this->SharedLongest : this->OwnLongest;
+    model.FeatureSize = this->Options.FeatureSize > 0.0 ? this->Options.FeatureSize
+      : diagonal > 0.0                                  ? 0.01 * diagonal
+                                                        : 1.0;
+    model.ReferenceMagnitude = this->Options.ReferenceMagnitude > 0.0
+      ? this->Options.ReferenceMagnitude
+      : std::max(longest, 1e-300);
+    const double period = this->Options.TimePeriod;
+    model.Phase = this->Options.Phase + (period > 0.0 ? this->Options.Time / period : 0.0);
+  }
+
+  /// After a change of what the source depends on.
+  void SetMotion()
+  {
+    const bool motion =
+      this->Options.Animate || this->Options.Phase != 0.0 || this->Options.TimePeriod > 0.0;
+    if (motion != this->Options.Model.Motion)
+    {
+      this->Options.Model.Motion = motion;
+      this->VariantTime.Modified();
+    }
+  }
+};
+
+namespace
+{
+/// A mapper of all blocks that adds the noise to its vertices and its shader.
+class vtkSteerableNoiseHelper : public HelperSuperclass
+{
+public:
+  static vtkSteerableNoiseHelper* New();
+  vtkTypeMacro(vtkSteerableNoiseHelper, HelperSuperclass);
+
+  void ReleaseGraphicsResources(vtkWindow* window) override
+  {
+    if (this->CellTexture)
+    {
+      this->CellTexture->ReleaseGraphicsResources(window);
+      this->CellBuffer->ReleaseGraphicsResources();
+    }
+    this->Superclass::ReleaseGraphicsResources(window);
+  }
+
+protected:
+#ifdef STEERABLENOISE_DELEGATOR
+  using BlockData = GLBatchElement;
+  static vtkPolyData* GetPolyData(const BlockData* block) { return block->Parent.PolyData; }
+  static void SetPolyData(BlockData* block, vtkPolyData* data) { block->Parent.PolyData = data; }
+  static void SetTranslucent(BlockData* block) { block->Parent.IsOpaque = false; }
+  template <class Visit>
+  void ForEachBlock(Visit&& visit)
+  {
+    for (auto& entry : this->VTKPolyDataToGLBatchElement)
+    {
+      visit(entry.second.get());
+    }
+  }
+#else
+  using BlockData = vtkCompositeMapperHelperData;
+  static vtkPolyData* GetPolyData(const BlockData* block) { return block->Data; }
+  static void SetPolyData(BlockData* block, vtkPolyData* data) { block->Data = data; }
+  static void SetTranslucent(BlockData* block) { block->IsOpaque = false; }
+  template <class Visit>
+  void ForEachBlock(Visit&& visit)
+  {
+    for (auto& entry : this->Data)
+    {
+      visit(entry.second);
+    }
+  }
+#endif
+
+  vtkSteerableNoiseMapper::Internals& GetInternals()
+  {
+    return static_cast<vtkSteerableNoiseMapper*>(static_cast<vtkObjectBase*>(this->Parent))
+      ->GetInternals();
+  }
+
+  /// Not on picks, and not where a geometry shader would have to pass on what the vertices say.
+  bool ShowsNoise(vtkRenderer* renderer)
+  {
+    return this->GetInternals().AnyNoise && !renderer->GetSelector();
+  }
+
+  bool GetNeedToRebuildShaders(vtkOpenGLHelper& cells, vtkRenderer* renderer, vtkActor* actor) override
+  {
+    const bool rebuild = this->Superclass::GetNeedToRebuildShaders(cells, renderer, actor);
+    return rebuild || cells.ShaderSourceTime < this->GetInternals().VariantTime;
+  }
+
+  void ReplaceShaderValues(
+    std::map<vtkShader::Type, vtkShader*> shaders, vtkRenderer* renderer, vtkActor* actor) override
+  {
+    if (this->ShowsNoise(renderer) && shaders[vtkShader::Geometry]->GetSource().empty() &&
+      !this->DrawingVertices)
+    {
+      noise::AddNoise(shaders, this->GetInternals().Options, this->GetInternals().Variant);
+    }
+    this->Superclass::ReplaceShaderValues(shaders, renderer, actor);
+  }
+
+  void SetMapperShaderParameters(
+    vtkOpenGLHelper& cells, vtkRenderer* renderer, vtkActor* actor) override
+  {
+    this->Superclass::SetMapperShaderParameters(cells, renderer, actor);
+    if (!cells.Program->IsUniformUsed("noiseVertexScale"))
+    {
+      return;
+    }
+    std::array<double, 3> shift = { 0.0, 0.0, 0.0 };
+    std::array<double, 3> scale = { 1.0, 1.0, 1.0 };
+    vtkOpenGLVertexBufferObject* places = this->VBOs->GetVBO("vertexMC");
+    if (places && places->GetCoordShiftAndScaleEnabled())
+    {
+      std::copy_n(places->GetShift().begin(), 3, shift.begin());
+      std::copy_n(places->GetScale().begin(), 3, scale.begin());
+    }
+    noise::SetUniforms(
+      cells.Program, this->GetInternals().Options, renderer, actor, shift, scale);
+    if (this->CellTexture && cells.Program->IsUniformUsed("noiseCells"))
+    {
+      cells.Program->SetUniformi("noiseCells", this->CellTexture->GetTextureUnit());
+    }
+  }
+
+  void SetShaderValues(vtkShaderProgram* program, BlockData* block, size_t firstPrimitive) override
+  {
+    this->Superclass::SetShaderValues(program, block, firstPrimitive);
+    const auto* found = this->GetInternals().Find(GetPolyData(block));
+    if (program->IsUniformUsed("noiseLongest"))
+    {
+      program->SetUniformf(
+        "noiseLongest", found ? static_cast<float>(found->Fields.Longest) : 1.0f);
+    }
+    if (program->IsUniformUsed("noiseFirstPrimitive"))
+    {
+      program->SetUniformi("noiseFirstPrimitive", static_cast<int>(firstPrimitive));
+    }
+  }
+
+  void RenderPieceStart(vtkRenderer* renderer, vtkActor* actor) override
+  {
+    this->Superclass::RenderPieceStart(renderer, actor);
+    if (this->CellTexture && this->GetInternals().Variant.PerCell)
+    {
+      this->CellTexture->Activate();
+    }
+  }
+
+  void RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) override
+  {
+    if (this->GetInternals().Options.ColorMode == vtkSteerableNoiseMapper::OPACITY)
+    {
+      this->ForEachBlock([](BlockData* block) { SetTranslucent(block); });
+    }
+    this->Superclass::RenderPieceDraw(renderer, actor);
+  }
+
+  void RenderPieceFinish(vtkRenderer* renderer, vtkActor* actor) override
+  {
+    if (this->CellTexture && this->GetInternals().Variant.PerCell)
+    {
+      this->CellTexture->Deactivate();
+    }
+    this->Superclass::RenderPieceFinish(renderer, actor);
+  }
+
+  void BuildBufferObjects(vtkRenderer* renderer, vtkActor* actor) override
+  {
+    this->CellLines.clear();
+    this->OwnVertices.clear();
+    this->Superclass::BuildBufferObjects(renderer, actor);
+    this->OwnVertices.clear();
+    if (!this->CellLines.empty())
+    {
+      if (!this->CellTexture)
+      {
+        this->CellTexture = vtkSmartPointer<vtkTextureObject>::New();
+        this->CellBuffer = vtkSmartPointer<vtkOpenGLBufferObject>::New();
+        this->CellBuffer->SetType(vtkOpenGLBufferObject::TextureBuffer);
+      }
+      this->CellTexture->SetContext(
+        static_cast<vtkOpenGLRenderWindow*>(renderer->GetRenderWindow()));
+      this->CellBuffer->Upload(this->CellLines, vtkOpenGLBufferObject::TextureBuffer);
+      this->CellTexture->CreateTextureBuffer(static_cast<unsigned int>(this->CellLines.size() / 4),
+        4, VTK_FLOAT, this->CellBuffer);
+      this->CellLines = std::vector<float>();
+    }
+  }
+
+  void AppendOneBufferObject(vtkRenderer* renderer, vtkActor* actor, BlockData* block,
+    vtkIdType& offset, std::vector<unsigned char>& colors, std::vector<float>& normals) override
+  {
+    vtkPolyData* data = GetPolyData(block);
+    const auto& internals = this->GetInternals();
+    if (!data->GetPoints() || data->GetNumberOfPoints() == 0 || !internals.AnyNoise)
+    {
+      this->Superclass::AppendOneBufferObject(renderer, actor, block, offset, colors, normals);
+      return;
+    }
+    vtkDataArray* places = data->GetPoints()->GetData();
+    vtkIdType first = 0;
+    vtkIdType before = 0;
+    vtkIdType after = 0;
+    if (this->VBOs->ArrayExists("vertexMC", places, first, before))
+    {
+      // Another block has the same points. The superclass would use its vertices, with its vectors and
+      // normals: points of its own make it append them again.
+      vtkNew<vtkPolyData> own;
+      own->ShallowCopy(data);
+      vtkSmartPointer<vtkDataArray> copy;
+      copy.TakeReference(places->NewInstance());
+      copy->ShallowCopy(places);
+      vtkNew<vtkPoints> points;
+      points->SetData(copy);
+      own->SetPoints(points);
+      this->OwnVertices.emplace_back(own.Get());
+      SetPolyData(block, own);
+      this->Superclass::AppendOneBufferObject(renderer, actor, block, offset, colors, normals);
+      SetPolyData(block, data);
+    }
+    else
+    {
+      this->Superclass::AppendOneBufferObject(renderer, actor, block, offset, colors, normals);
+    }
+    this->VBOs->ArrayExists("vertexMC", places, first, after);
+    const vtkIdType count = after - before;
+    const auto* found = internals.Find(data);
+    if (internals.Variant.PerCell)
+    {
+      this->AppendCells(block, data, found, actor);
+      return;
+    }
+    const noise::SurfaceFields fields = found ? found->Fields : noise::SurfaceFields();
+    if (internals.Variant.Tensors)
+    {
+      this->AppendAttribute("noiseSteering", fields.Steering, 0, count);
+      this->AppendAttribute("noiseSteering2", fields.Steering, 3, count);
+    }
+    else
+    {
+      this->AppendAttribute("noiseSteering", fields.Steering, 0, count);
+      this->AppendAttribute("noiseNormal", fields.Normals, 0, count);
+      this->AppendAttribute("noiseBend", fields.Curvature, 0, count);
+    }
+  }
+
+private:
+  /// Three components from `component` on; zeros where a block has none, so that vertices stay in step.
+  void AppendAttribute(const char* name, vtkFloatArray* array, int component, vtkIdType count)
+  {
+    vtkSmartPointer<vtkFloatArray> three = array;
+    if (!array || array->GetNumberOfComponents() != 3 || array->GetNumberOfTuples() != count)
+    {
+      three = vtkSmartPointer<vtkFloatArray>::New();
+      three->SetNumberOfComponents(3);
+      three->SetNumberOfTuples(count);
+      std::fill_n(three->GetPointer(0), 3 * count, 0.0f);
+      for (vtkIdType i = 0; array && i < std::min(count, array->GetNumberOfTuples()); ++i)
+      {
+        const float* tuple =
+          array->GetPointer(array->GetNumberOfComponents() * i) + component;
+        std::copy_n(tuple, 3, three->GetPointer(3 * i));
+      }
+    }
+    this->VBOs->AppendDataArray(name, three, VTK_FLOAT);
+  }
+
+  /// Three texels for each primitive: what steers it, then normal and curvature or the rest of a tensor.
+  void AppendCells(BlockData* block, vtkPolyData* data,
+    const vtkSteerableNoiseMapper::Internals::Block* found, vtkActor* actor)
+  {
+    vtkCellArray* cells[4] = { data->GetVerts(), data->GetLines(), data->GetPolys(),
+      data->GetStrips() };
+    block->CellCellMap->Update(
+      cells, actor->GetProperty()->GetRepresentation(), data->GetPoints());
+    const auto append = [this](vtkFloatArray* array, vtkIdType cell, int component)
+    {
+      for (int c = 0; c < 4; ++c)
+      {
+        this->CellLines.push_back(array && c < 3
+            ? array->GetValue(array->GetNumberOfComponents() * cell + component + c)
+            : 0.0f);
+      }
+    };
+    for (std::size_t i = 0; i < static_cast<std::size_t>(block->CellCellMap->GetSize()); ++i)
+    {
+      const vtkIdType cell = block->CellCellMap->GetValue(i);
+      const noise::SurfaceFields fields =
+        found && found->PerCell ? found->Fields : noise::SurfaceFields();
+      const bool tensors = fields.Steering && fields.Steering->GetNumberOfComponents() == 6;
+      append(fields.Steering, cell, 0);
+      append(tensors ? fields.Steering : fields.Normals, cell, tensors ? 3 : 0);
+      append(fields.Curvature, cell, 0);
+    }
+  }
+
+  vtkSmartPointer<vtkTextureObject> CellTexture;
+  vtkSmartPointer<vtkOpenGLBufferObject> CellBuffer;
+  std::vector<float> CellLines;
+  std::vector<vtkSmartPointer<vtkPolyData>> OwnVertices;
+};
+vtkStandardNewMacro(vtkSteerableNoiseHelper);
+
+#ifdef STEERABLENOISE_DELEGATOR
+class vtkSteerableNoiseDelegator : public vtkOpenGLCompositePolyDataMapperDelegator
+{
+public:
+  static vtkSteerableNoiseDelegator* New();
+  vtkTypeMacro(vtkSteerableNoiseDelegator, vtkOpenGLCompositePolyDataMapperDelegator);
+
+protected:
+  vtkSteerableNoiseDelegator()
+  {
+    this->GLDelegate = vtkSteerableNoiseHelper::New();
+    this->Delegate = vtk::TakeSmartPointer(this->GLDelegate);
+  }
+};
+vtkStandardNewMacro(vtkSteerableNoiseDelegator);
+#endif
+
+template <class Visit>
+void ForEachPolyData(vtkDataObject* input, Visit&& visit)
+{
+  if (auto* composite = vtkCompositeDataSet::SafeDownCast(input))
+  {
+    vtkSmartPointer<vtkCompositeDataIterator> iterator;
+    iterator.TakeReference(composite->NewIterator());
+    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+    {
+      if (auto* data = vtkPolyData::SafeDownCast(iterator->GetCurrentDataObject()))
+      {
+        visit(data);
+      }
+    }
+  }
+  else if (auto* data = vtkPolyData::SafeDownCast(input))
+  {
+    visit(data);
+  }
+}
+} // namespace
+
+vtkStandardNewMacro(vtkSteerableNoiseMapper);
+
+vtkSteerableNoiseMapper::vtkSteerableNoiseMapper()
+  : Internal(new Internals)
+{
+}
+
+vtkSteerableNoiseMapper::~vtkSteerableNoiseMapper() = default;
+
+#ifdef STEERABLENOISE_DELEGATOR
+vtkCompositePolyDataMapperDelegator* vtkSteerableNoiseMapper::CreateADelegator()
+{
+  return vtkSteerableNoiseDelegator::New();
+}
+#else
+vtkCompositeMapperHelper2* vtkSteerableNoiseMapper::CreateHelper()
+{
+  return vtkSteerableNoiseHelper::New();
+}
+#endif
+
+void vtkSteerableNoiseMapper::FindFields()
+{
+  Internals& internals = *this->Internal;
+  vtkDataObject* input = this->GetInputDataObject(0, 0);
+  std::map<vtkPolyData*, Internals::Block> blocks;
+  vtkBoundingBox bounds;
+  noise::ShaderVariant variant;
+  internals.AnyNoise = false;
+  internals.OwnLongest = 0.0;
+  const vtkMTimeType chosen = std::max(
+    this->GetInputArrayInformation(0)->GetMTime(), internals.PerCellTime.GetMTime());
+  std::string why;
+  ForEachPolyData(input,
+    [&](vtkPolyData* data)
+    {
+      if (data->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      bounds.AddBounds(data->GetBounds());
+      bool cells = false;
+      std::string whyNot;
+      vtkDataArray* array =
+        noise::FindSteeringArray(data, this->GetInputArrayInformation(0), cells, whyNot);
+      if (!array)
+      {
+        why = whyNot;
+        return;
+      }
+      const bool perCell = cells && internals.Options.VectorsPerCell;
+      const bool tensors = array->GetNumberOfComponents() > 3;
+      if (internals.AnyNoise && (tensors != variant.Tensors || perCell != variant.PerCell))
+      {
+        return; // one kind at a time: the first block's
+      }
+      const vtkMTimeType time = std::max(data->GetMTime(), chosen);
+      const auto known = internals.Blocks.find(data);
+      Internals::Block& block = blocks[data];
+      if (known != internals.Blocks.end() && known->second.Time == time)
+      {
+        block = known->second;
+      }
+      else
+      {
+        block.Fields = noise::ComputeSurfaceFields(data, array, cells, perCell);
+        block.PerCell = perCell;
+        block.Time = time;
+      }
+      variant.Tensors = tensors;
+      variant.PerCell = perCell;
+      internals.AnyNoise = true;
+      internals.OwnLongest = std::max(internals.OwnLongest, block.Fields.Longest);
+    });
+  internals.Blocks.swap(blocks);
+  internals.OwnDiagonal = bounds.IsValid() ? bounds.GetDiagonalLength() : 0.0;
+  if (variant.Tensors != internals.Variant.Tensors || variant.PerCell != internals.Variant.PerCell)
+  {
+    internals.Variant = variant;
+    internals.VariantTime.Modified();
+  }
+  const vtkMTimeType time =
+    std::max(input ? input->GetMTime() : 0, chosen);
+  if (!internals.AnyNoise && !why.empty() && internals.WarningTime != time)
+  {
+    internals.WarningTime = time;
+    vtkWarningMacro(<< why << " Until then the surface shows its own colours.");
+  }
+}
+
+void vtkSteerableNoiseMapper::Render(vtkRenderer* renderer, vtkActor* actor)
+{
+  if (!this->Static && this->GetInputAlgorithm())
+  {
+    this->GetInputAlgorithm()->Update();
+  }
+  this->FindFields();
+  this->Internal->Resolve();
+  this->Superclass::Render(renderer, actor);
+}
+
+// Options that are drawn, not computed from: they leave the modification time alone, which would upload all
+// vertices again. Those that the source of the shader depends on (`VARIANT`) have it made anew.
+#define STEERABLENOISE_OPTION(name, type, member, value, AFTER)                                    \
+  void vtkSteerableNoiseMapper::Set##name(type name)                                               \
+  {                                                                                                \
+    const auto wanted = value;                                                                     \
+    if (!(this->Internal->Options.member == wanted))                                               \
+    {                                                                                              \
+      this->Internal->Options.member = wanted;                                                     \
+      AFTER;                                                                                       \
+    }                                                                                              \
+  }                                                                                                \
+  type vtkSteerableNoiseMapper::Get##name()                                                        \
+  {                                                                                                \
+    return static_cast<type>(this->Internal->Options.member);                                      \
+  }
+#define STEERABLENOISE_DRAWN(name, member, low, high)                                              \
+  STEERABLENOISE_OPTION(name, double, member, Clamp(name, low, high), )
+#define VARIANT this->Internal->VariantTime.Modified()
+
+namespace
+{
+/// NaN becomes the lower limit.
+template <class T>
+T Clamp(T value, T low, T high)
+{
+  return value >= low ? std::min(value, high) : low;
+}
+} // namespace
+
+STEERABLENOISE_DRAWN(FeaturePixels, FeaturePixels, 1.0, 100.0)
+STEERABLENOISE_DRAWN(FeatureSize, FeatureSize, 0.0, VTK_DOUBLE_MAX)
+STEERABLENOISE_DRAWN(StreakLength, Model.StreakLength, 1.0, 20.0)
+STEERABLENOISE_DRAWN(EigenvalueSum, Model.EigenvalueSum, 2.0, 16.0)
+STEERABLENOISE_DRAWN(Strength, Model.Strength, 0.0, 1.0)
+STEERABLENOISE_DRAWN(ReferenceMagnitude, ReferenceMagnitude, 0.0, VTK_DOUBLE_MAX)
+STEERABLENOISE_DRAWN(MaskThreshold, Model.MaskThreshold, 0.0, VTK_DOUBLE_MAX)
+STEERABLENOISE_DRAWN(Density, Model.Density, 0.01, 1.0)
+STEERABLENOISE_DRAWN(Speed, Model.Speed, -4.0, 4.0)
+STEERABLENOISE_DRAWN(Lacunarity, Model.Lacunarity, 1.0, 8.0)
+STEERABLENOISE_DRAWN(Gain, Model.Gain, 0.0, 1.0)
+STEERABLENOISE_DRAWN(NoiseIntensity, Intensity, 0.0, 1.0)
+STEERABLENOISE_DRAWN(NoiseContrast, Contrast, 0.0, 10.0)
+STEERABLENOISE_DRAWN(Time, Time, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX)
+STEERABLENOISE_OPTION(Phase, double, Phase,
+  std::isfinite(Phase) ? Phase - std::floor(Phase) : 0.0, this->Internal->SetMotion())
+STEERABLENOISE_OPTION(TimePeriod, double, TimePeriod, Clamp(TimePeriod, 0.0, VTK_DOUBLE_MAX),
+  this->Internal->SetMotion())
+STEERABLENOISE_OPTION(Animate, bool, Animate, Animate, this->Internal->SetMotion())
+STEERABLENOISE_OPTION(FollowCurvature, bool, Model.FollowCurvature, FollowCurvature, )
+STEERABLENOISE_OPTION(UseMaskColor, bool, UseMaskColor, UseMaskColor, )
+STEERABLENOISE_OPTION(Seed, int, Model.Seed, static_cast<std::uint32_t>(Seed), )
+STEERABLENOISE_OPTION(Octaves, int, Model.Octaves, Clamp(Octaves, 1, 8), VARIANT)
+STEERABLENOISE_OPTION(OutputValue, bool, OutputValue, OutputValue, VARIANT)
+STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthBy,
+  StrengthMode == MAGNITUDE ? steerable::StrengthMode::Magnitude : steerable::StrengthMode::Constant, )
+STEERABLENOISE_OPTION(Basis, int, Model.Surflet,
+  Basis == STREAKS ? steerable::Basis::Streaks : steerable::Basis::Gradient, VARIANT)
+// The first decides on which pass the geometry is drawn, the second on what is uploaded.
+STEERABLENOISE_OPTION(ColorMode, int, ColorMode, Clamp<int>(ColorMode, MULTIPLY, OPACITY),
+  this->Modified())
+STEERABLENOISE_OPTION(VectorsPerCell, bool, VectorsPerCell, VectorsPerCell,
+  this->Internal->PerCellTime.Modified();
+  this->Modified())
+
+void vtkSteerableNoiseMapper::SetFeatureSizeMode(int mode)
+{
+  const bool pixels = mode != WORLD;
+  if (pixels != this->Internal->Options.Pixels)
+  {
+    this->Internal->Options.Pixels = pixels;
+    VARIANT;
+  }
+}
+
+int vtkSteerableNoiseMapper::GetFeatureSizeMode()
+{
+  return this->Internal->Options.Pixels ? PIXELS : WORLD;
+}
+
+void vtkSteerableNoiseMapper::SetMaskColor(double red, double green, double blue)
+{
+  this->Internal->Options.MaskColor = { Clamp(red, 0.0, 1.0), Clamp(green, 0.0, 1.0),
+    Clamp(blue, 0.0, 1.0) };
+}
+
+void vtkSteerableNoiseMapper::GetMaskColor(double color[3])
+{
+  std::copy_n(this->Internal->Options.MaskColor.begin(), 3, color);
+}
+
+void vtkSteerableNoiseMapper::SetSharedExtremes(double diagonal, double longest)
+{
+  this->Internal->SharedDiagonal = Clamp(diagonal, 0.0, VTK_DOUBLE_MAX);
+  this->Internal->SharedLongest = Clamp(longest, 0.0, VTK_DOUBLE_MAX);
+}
+
+bool vtkSteerableNoiseMapper::SetOptionsFrom(vtkSteerableNoiseFilter* filter)
+{
+  std::string refused;
+  const auto refuse = [&](bool different, const char* name, const char* wanted)
+  {
+    if (different)
+    {
+      refused += std::string(refused.empty() ? "" : ", ") + name + " (only " + wanted + ")";
+    }
+  };
+  const int* period = filter->GetPeriod();
+  refuse(filter->GetLatticeWindow(), "LatticeWindow", "off");
+  refuse(filter->GetBasis() == vtkSteerableNoiseFilter::VALUE, "Basis", "Gradient and Streaks");
+  refuse(filter->GetNormalization() != vtkSteerableNoiseFilter::UNIT_VARIANCE, "Normalization",
+    "Unit Variance");
+  refuse(filter->GetFade() != vtkSteerableNoiseFilter::QUINTIC, "Fade", "Quintic");
+  refuse(filter->GetLattice() != vtkSteerableNoiseFilter::SQUARE, "Lattice", "Square");
+  refuse(filter->GetGradientSet() != vtkSteerableNoiseFilter::UNIFORM, "GradientSet", "Uniform");
+  refuse(filter->GetTurbulence(), "Turbulence", "off");
+  refuse(filter->GetOctaves() > 8, "Octaves", "up to 8");
+  refuse(period[0] != 0 || period[1] != 0 || period[2] != 0, "Period", "0");
+  if (!refused.empty())
+  {
+    vtkErrorMacro(<< "Noise of fragments does not have: " << refused
+                  << ". Set these on the filter, or use the filter's array.");
+    return false;
+  }
+  this->SetFeatureSizeMode(WORLD);
+  this->SetFeatureSize(filter->GetFeatureSize());
+//TEMP  this->SetStreakLength(filter->GetStreakLength());
+  this->SetEigenvalueSum(filter->GetEigenvalueSum());
+  this->SetStrength(filter->GetStrength());
+  this->SetStrengthMode(filter->GetStrengthMode());
+  this->SetReferenceMagnitude(filter->GetReferenceMagnitude());
+  this->SetMaskThreshold(filter->GetMaskThreshold());
+  this->SetFollowCurvature(filter->GetFollowCurvature());
+  this->SetBasis(filter->GetBasis());
+  this->SetDensity(filter->GetDensity());
+  this->SetPhase(filter->GetPhase());
+  this->SetAnimate(filter->GetAnimate());
+  this->SetSpeed(filter->GetSpeed());
+  this->SetTimePeriod(filter->GetTimePeriod());
+  this->SetOctaves(filter->GetOctaves());
+  this->SetLacunarity(filter->GetLacunarity());
+  this->SetGain(filter->GetGain());
+  this->SetSeed(filter->GetSeed());
+  return true;
+}
+
+bool vtkSteerableNoiseMapper::HasOpaqueGeometry()
+{
+  return this->Internal->Options.ColorMode != OPACITY && this->Superclass::HasOpaqueGeometry();
+}
+
+bool vtkSteerableNoiseMapper::HasTranslucentPolygonalGeometry()
+{
+  return this->Internal->Options.ColorMode == OPACITY ||
+    this->Superclass::HasTranslucentPolygonalGeometry();
+}
+
+void vtkSteerableNoiseMapper::ShallowCopy(vtkAbstractMapper* mapper)
+{
+  if (auto* other = vtkSteerableNoiseMapper::SafeDownCast(mapper))
+  {
+    this->Internal->Options = other->Internal->Options;
+    this->Internal->SharedDiagonal = other->Internal->SharedDiagonal;
+    this->Internal->SharedLongest = other->Internal->SharedLongest;
+    VARIANT;
+  }
+  this->Superclass::ShallowCopy(mapper);
+}
+
+void vtkSteerableNoiseMapper::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FeatureSizeMode: " << (this->Internal->Options.Pixels ? "Pixels" : "World") << "\n"
+     << indent << "FeaturePixels: " << this->GetFeaturePixels() << "\n"
+     << indent << "FeatureSize: " << this->GetFeatureSize() << "\n"
+     << indent << "StreakLength: " << this->GetStreakLength() << "\n"
+     << indent << "EigenvalueSum: " << this->GetEigenvalueSum() << "\n"
+     << indent << "Strength: " << this->GetStrength() << "\n"
+     << indent << "StrengthMode: " << this->GetStrengthMode() << "\n"
+     << indent << "ReferenceMagnitude: " << this->GetReferenceMagnitude() << "\n"
+     << indent << "MaskThreshold: " << this->GetMaskThreshold() << "\n"
+     << indent << "FollowCurvature: " << this->GetFollowCurvature() << "\n"
+     << indent << "Basis: " << this->GetBasis() << "\n"
+     << indent << "Density: " << this->GetDensity() << "\n"
+     << indent << "Phase: " << this->GetPhase() << "\n"
+     << indent << "Animate: " << this->GetAnimate() << "\n"
+     << indent << "Speed: " << this->GetSpeed() << "\n"
+     << indent << "TimePeriod: " << this->GetTimePeriod() << "\n"
+     << indent << "Octaves: " << this->GetOctaves() << "\n"
+     << indent << "Lacunarity: " << this->GetLacunarity() << "\n"
+     << indent << "Gain: " << this->GetGain() << "\n"
+     << indent << "Seed: " << this->GetSeed() << "\n"
+     << indent << "VectorsPerCell: " << this->GetVectorsPerCell() << "\n"
+     << indent << "ColorMode: " << this->GetColorMode() << "\n"
+     << indent << "NoiseIntensity: " << this->GetNoiseIntensity() << "\n"
+     << indent << "NoiseContrast: " << this->GetNoiseContrast() << "\n"
+     << indent << "UseMaskColor: " << this->GetUseMaskColor() << "\n";
+}

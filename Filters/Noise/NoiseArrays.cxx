@@ -269,10 +269,6 @@ vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)
   {
     return vectors;
   }
-  if (vtkDataArray* tensors = attributes->GetTensors())
-  {
-    return tensors;
-  }
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = attributes->GetArray(i);
@@ -285,6 +281,6 @@ vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)
       return array;
     }
   }
-  return nullptr;
+  return attributes->GetTensors();
 }
 } // namespace noise

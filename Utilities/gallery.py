@@ -161,21 +161,24 @@ UpdatePipeline(proxy=points)
 lic = convolved(image_of(points), 20)
 inside = crop(lic)
 middle, spread = inside[inside > 0].mean(), inside[inside > 0].std()
-finer = SteerableNoise(Input=points, SelectInputVectors=["POINTS", "velocity"], FeatureSize=0.08, Quality=8, Magnification=FINE, MaskThreshold=1e-6)
+finer = SteerableNoise(Input=points, SelectInputVectors=["POINTS", "velocity"], FeatureSize=0.08, Magnification=FINE, MaskThreshold=1e-6)
 UpdatePipeline(proxy=finer)
 image = image_of(finer)
 columns, rows, _ = image.GetDimensions()
 noise = vtk_to_numpy(image.GetPointData().GetArray("SteerableNoise")).reshape(rows, columns)
 sheet("noise_and_lic", [
-    ("Steerable Noise, FeatureSize 0.08, Quality 8", grey(crop(noise))),
+    ("Steerable Noise, FeatureSize 0.08", grey(crop(noise))),
     ("Line integral convolution, 20 steps of a pixel each way", grey(crop((lic - middle) / spread))),
 ])
 
-options("quality", [("Quality %d" % quality, dict(Quality=quality)) for quality in (0, 1, 2, 4, 8)] + [
+# The paper's own model.
+PAPER = dict(LatticeWindow=1, EigenvalueSum=4)
+options("streak_length", [("StreakLength %g" % length, dict(StreakLength=length)) for length in (2, 4, 6, 12)])
+options("quality", [("LatticeWindow on, Quality %d" % quality, dict(PAPER, Quality=quality)) for quality in (0, 1, 2, 4, 8)] + [
     ("Strength 0: no direction", dict(Strength=0.0))])
 options("follow_curvature", [
-    ("FollowCurvature off, Quality 8", dict(FollowCurvature=0, Quality=8, Magnification=7)),
-    ("FollowCurvature on, Quality 8", dict(Quality=8, Magnification=7))], box=CLOSE)
+    ("FollowCurvature off", dict(FollowCurvature=0, Magnification=7)),
+    ("FollowCurvature on", dict(Magnification=7))], box=CLOSE)
 options("feature_size", [("FeatureSize %g" % size, dict(FeatureSize=size)) for size in (0.08, 0.12, 0.2, 0.4)])
 options("basis", [("Basis Gradient", {}), ("Basis Value", dict(Basis="Value"))])
 options("streaks", [
@@ -186,8 +189,8 @@ options("strength", [("Strength %g" % strength, dict(Strength=strength)) for str
 options("mask_threshold", [("MaskThreshold 0: isotropic noise in the cylinder", {}),
     ("MaskThreshold 0.3: slow flow is blank", dict(MaskThreshold=0.3))])
 options("normalization", [
-    ("Normalization Unit Variance", dict(Quality=1)), ("Normalization Weight Sum", dict(Quality=1, Normalization="Weight Sum")),
-    ("Normalization None", dict(Quality=1, Normalization="None"))], columns=3, box=(6.2, 10.4, 2.3, 5.7))
+    ("Normalization Unit Variance", dict(PAPER, Quality=1)), ("Normalization Weight Sum", dict(PAPER, Quality=1, Normalization="Weight Sum")),
+    ("Normalization None", dict(PAPER, Quality=1, Normalization="None"))], columns=3, box=(6.2, 10.4, 2.3, 5.7))
 options("octaves", [
     ("Octaves 1, FeatureSize 0.4", dict(FeatureSize=0.4)),
     ("Octaves 3, Gain 0.5", dict(FeatureSize=0.4, Octaves=3)),
@@ -197,13 +200,13 @@ options("turbulence", [
     ("Octaves 1, Turbulence, FeatureSize 0.4", dict(FeatureSize=0.4, Turbulence=1)),
     ("Octaves 3, Turbulence, FeatureSize 0.4", dict(FeatureSize=0.4, Octaves=3, Turbulence=1))], low=0.0, high=3.0)
 options("fade", [("Fade %s" % fade, dict(Fade=fade, Magnification=6)) for fade in ("Cubic", "Quintic", "Wide")], columns=3, box=CLOSE)
-options("falloff", [("Falloff %s, Quality 0" % falloff, dict(Falloff=falloff, Quality=0)) for falloff in ("Separable", "Radial")])
-options("lattice", [("Lattice %s, Quality 0" % lattice, dict(Lattice=lattice, Quality=0)) for lattice in ("Square", "Jittered", "Simplicial")],
+options("falloff", [("LatticeWindow on, Quality 0, Falloff %s" % falloff, dict(PAPER, Falloff=falloff, Quality=0)) for falloff in ("Separable", "Radial")])
+options("lattice", [("Lattice %s, StreakLength 2" % lattice, dict(Lattice=lattice, StreakLength=2)) for lattice in ("Square", "Jittered", "Simplicial")],
     columns=3, box=(6.2, 10.4, 2.3, 5.7))
 options("gradient_set", [("GradientSet %s" % kind, dict(GradientSet=kind)) for kind in ("Uniform", "Perlin")])
-options("eigenvalue_sum", [("EigenvalueSum %g, Quality 0" % trace, dict(EigenvalueSum=trace, Quality=0)) for trace in (4, 6, 8, 16)])
-options("minimum_eigenvalue", [("MinimumEigenvalue %g" % least, dict(MinimumEigenvalue=least)) for least in (1, 0.5, 0.2, 0.05)])
-options("lattice_window", [("LatticeWindow on, Quality 0", dict(Quality=0)), ("LatticeWindow off, Quality 0", dict(Quality=0, LatticeWindow=0))])
+options("eigenvalue_sum", [("EigenvalueSum %g" % trace, dict(EigenvalueSum=trace)) for trace in (2, 3.2, 6, 16)])
+options("minimum_eigenvalue", [("LatticeWindow on, MinimumEigenvalue %g" % least, dict(PAPER, MinimumEigenvalue=least)) for least in (1, 0.5, 0.2, 0.05)])
+options("lattice_window", [("LatticeWindow off", {}), ("LatticeWindow on, Quality 4, EigenvalueSum 4", PAPER)])
 # Strength 0, so that the repetition shows: 8 cells of 0.2 diameters.
 options("period", [("Period 0 0 0, Strength 0", dict(Strength=0.0, FeatureSize=0.2)),
     ("Period 8 8 0, Strength 0", dict(Strength=0.0, FeatureSize=0.2, Period=[8, 8, 0]))])

@@ -1660,7 +1660,7 @@ private:
         // a part of it, so s is as precise there.
         const V(&high)[2] = sample.HighNormal;
         const V(&low)[2] = sample.LowNormal;
-        if constexpr (Curved)
+        if constexpr (Curved || !HWY_NATIVE_FMA) // without fused products this much is needed anyway
         {
           s = hn::Add(hn::MulSub(high[1], offset[0], hn::Mul(high[0], offset[1])),
             hn::MulSub(low[1], offset[0], hn::MulAdd(low[0], offset[1], sample.AlongFraction)));

@@ -273,10 +273,6 @@ vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)
   {
     return vectors;
   }
-  if (vtkDataArray* tensors = attributes->GetTensors())
-  {
-    return tensors;
-  }
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
   {
     vtkDataArray* array = attributes->GetArray(i);
@@ -289,7 +285,7 @@ vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)
       return array;
     }
   }
-  return nullptr;
+  return attributes->GetTensors();
 }
 
 vtkDataArray* FindSteeringArray(

@@ -53,8 +53,8 @@ std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray*
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataSet* dataset);
 
 /**
- * The array that steers the noise when nobody named one: active vectors, active tensors, else the
- * first floating-point array of 3 components that is neither normals nor texture coordinates.
+ * The array that steers the noise when nobody named one: active vectors, else the first floating-point
+ * array of 3 components that is neither normals nor texture coordinates, else active tensors.
  */
 vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes);
 } // namespace noise

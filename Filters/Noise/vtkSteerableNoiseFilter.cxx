@@ -177,6 +177,7 @@ struct vtkSteerableNoiseFilter::Internals
     const vtkSteerableNoiseFilter& f = *this->Self;
     steerable::NoiseParameters p;
     p.FeatureSize = f.FeatureSize;
+    p.StreakLength = f.StreakLength;
     p.Quality = f.Quality;
     p.MinimumEigenvalue = f.MinimumEigenvalue;
     p.EigenvalueSum = f.EigenvalueSum;
@@ -280,6 +281,18 @@ struct vtkSteerableNoiseFilter::Internals
       message << "\nThe samples are " << spacing << " apart, too far for noise of FeatureSize "
               << finest << ". Set FeatureSize to at least " << 4.0 * spacing
               << ", or refine the data (Magnification on images, Resample to Image, Subdivide).";
+    }
+    // Scripts from before StreakLength set these.
+    const steerable::NoiseParameters defaults;
+    if (!parameters.LatticeWindow &&
+      (parameters.Quality != defaults.Quality ||
+        parameters.MinimumEigenvalue != defaults.MinimumEigenvalue))
+    {
+      steerable::NoiseParameters paper = parameters;
+      paper.LatticeWindow = true;
+      message << "\nQuality and MinimumEigenvalue do not count without LatticeWindow. Set StreakLength ("
+              << std::round(10.0 / std::sqrt(paper.GetAlongEigenvalue())) / 10.0
+              << " is as long), or LatticeWindow 1 and EigenvalueSum 4 for the noise they gave before.";
     }
     if (!message.str().empty())
     {
@@ -532,6 +545,7 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FeatureSize: " << this->FeatureSize << "\n";
   os << indent << "ResolvedFeatureSize: " << this->ResolvedFeatureSize << "\n";
+  os << indent << "StreakLength: " << this->StreakLength << "\n";
   os << indent << "Quality: " << this->Quality << "\n";
   os << indent << "MinimumEigenvalue: " << this->MinimumEigenvalue << "\n";
   os << indent << "EigenvalueSum: " << this->EigenvalueSum << "\n";

@@ -97,20 +97,26 @@ public:
   vtkGetMacro(NumberOfStagnantSamples, vtkIdType);
 
   ///@{
-  /// Length of streaks, 0 to 8, default 4: surflets reach Quality + 1 cells.
+  /// Half-length of a streak in cells, 1 to 20, default 6. With LatticeWindow it does not count.
+  vtkSetClampMacro(StreakLength, double, 1.0, 20.0);
+  vtkGetMacro(StreakLength, double);
+  ///@}
+
+  ///@{
+  /// With LatticeWindow: length of streaks, 0 to 8, default 4; surflets reach Quality + 1 cells.
   vtkSetClampMacro(Quality, int, 0, 8);
   vtkGetMacro(Quality, int);
   ///@}
 
   ///@{
-  /// Smallest eigenvalue of the metric at Quality 0, 0.01 to 1, default 0.5: smaller is longer.
+  /// With LatticeWindow: smallest eigenvalue at Quality 0, 0.01 to 1, default 0.5: smaller is longer.
   vtkSetClampMacro(MinimumEigenvalue, double, 0.01, 1.0);
   vtkGetMacro(MinimumEigenvalue, double);
   ///@}
 
   ///@{
   /**
-   * Trace of the metric, 2 to 16, default 4: larger is thinner streaks, with gaps from 4 on.
+   * Trace of the metric, 2 to 16, default 3.2: larger is thinner streaks, with gaps from 4 on.
    * Normalization WeightSum needs 4 or less.
    */
   vtkSetClampMacro(EigenvalueSum, double, 2.0, 16.0);
@@ -118,7 +124,11 @@ public:
   ///@}
 
   ///@{
-  /// The window over the lattice's axes, default on; without it the metric alone bounds a surflet.
+  /**
+   * The paper's own model, default off: a window over the lattice's axes, and the length that Quality and
+   * MinimumEigenvalue say. Take it to compare with the paper; without it lines are longer and contrast is
+   * the same in every direction.
+   */
   vtkSetMacro(LatticeWindow, bool);
   vtkGetMacro(LatticeWindow, bool);
   vtkBooleanMacro(LatticeWindow, bool);
@@ -171,7 +181,10 @@ public:
   ///@}
 
   ///@{
-  /// Share of the lattice corners with a streak, 0.01 to 1, default 0.25.
+  /**
+   * How densely streaks lie, 0.01 to 1, default 0.25: a corner has one with probability Density · 3 /
+   * StreakLength, at most 1, with LatticeWindow Density.
+   */
   vtkSetClampMacro(Density, double, 0.01, 1.0);
   vtkGetMacro(Density, double);
   ///@}
@@ -324,10 +337,11 @@ protected:
   double ResolvedFeatureSize = 0.0;
   vtkIdType NumberOfDegenerateSamples = 0;
   vtkIdType NumberOfStagnantSamples = 0;
+  double StreakLength = 6.0;
   int Quality = 4;
   double MinimumEigenvalue = 0.5;
-  double EigenvalueSum = 4.0;
-  bool LatticeWindow = true;
+  double EigenvalueSum = 3.2;
+  bool LatticeWindow = false;
   double Strength = 1.0;
   int StrengthMode = CONSTANT;
   double ReferenceMagnitude = 0.0;

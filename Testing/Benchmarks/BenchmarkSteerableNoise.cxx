@@ -73,11 +73,13 @@ struct Image
   }
 };
 
-/// Quality 0 as the paper has it: no normalisation, no curvature.
+/// The paper's own model, without normalisation and curvature.
 NoiseParameters Plain(int quality)
 {
   NoiseParameters p;
   p.FeatureSize = 16.0;
+  p.LatticeWindow = true;
+  p.EigenvalueSum = 4.0;
   p.Quality = quality;
   p.FollowCurvature = false;
   p.Normalize = Normalization::None;
@@ -265,6 +267,8 @@ void RunFilter(
   filter->SetFeatureSize(16.0);
   if (!defaults)
   {
+    filter->LatticeWindowOn();
+    filter->SetEigenvalueSum(4.0);
     filter->SetQuality(0);
     filter->SetNormalization(vtkSteerableNoiseFilter::NONE);
     filter->FollowCurvatureOff();

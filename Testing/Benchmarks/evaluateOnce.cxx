@@ -33,6 +33,8 @@ int main(int argc, char** argv)
   const int dimension = std::atoi(argv[2]);
   NoiseParameters p;
   p.FeatureSize = 16.0;
+  p.LatticeWindow = true; // the paper's own model
+  p.EigenvalueSum = 4.0;
   p.Quality = std::atoi(argv[4]);
   if (std::strcmp(argv[5], "plain") == 0)
   {

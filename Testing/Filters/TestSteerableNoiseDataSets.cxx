@@ -584,6 +584,8 @@ std::vector<Case> BadInput()
   // Each property out of its range is clamped, and the noise stays finite.
   const std::pair<const char*, std::function<void(F)>> clamped[] = {
     { "FeatureSizeNegative", [](F f) { f->SetFeatureSize(-1.0); } },
+    { "StreakLengthZero", [](F f) { f->SetStreakLength(0.0); } },
+    { "StreakLengthHuge", [](F f) { f->SetStreakLength(1e9); } },
     { "QualityNegative", [](F f) { f->SetQuality(-3); } },
     { "QualityHuge", [](F f) { f->SetQuality(1000); } },
     { "MinimumEigenvalueZero", [](F f) { f->SetMinimumEigenvalue(0.0); } },
@@ -640,6 +642,7 @@ std::vector<Case> BadInput()
   // NaN passes a clamp.
   const std::pair<const char*, void (vtkSteerableNoiseFilter::*)(double)> numbers[] = {
     { "FeatureSizeNaN", &vtkSteerableNoiseFilter::SetFeatureSize },
+    { "StreakLengthNaN", &vtkSteerableNoiseFilter::SetStreakLength },
     { "MinimumEigenvalueNaN", &vtkSteerableNoiseFilter::SetMinimumEigenvalue },
     { "EigenvalueSumNaN", &vtkSteerableNoiseFilter::SetEigenvalueSum },
     { "StrengthNaN", &vtkSteerableNoiseFilter::SetStrength },

@@ -587,6 +587,8 @@ TEST(SteerableNoiseFilter, OutputMetricIsTheMetric)
   vtkNew<vtkSteerableNoiseFilter> filter;
   filter->SetInputData(image);
   filter->OutputMetricOn();
+  filter->LatticeWindowOn();
+  filter->SetEigenvalueSum(4.0);
   filter->SetQuality(1);
   filter->Update();
   auto* metric =
@@ -622,10 +624,10 @@ TEST(SteerableNoiseFilter, ReExecutesOnlyWhenSomethingChanged)
   filter->Update();
   filter->Update();
   EXPECT_EQ(executions, 1);
-  filter->SetQuality(2);
+  filter->SetStreakLength(2.0);
   filter->Update();
   EXPECT_EQ(executions, 2);
-  filter->SetQuality(2);
+  filter->SetStreakLength(2.0);
   filter->Update();
   EXPECT_EQ(executions, 2);
   image->GetPointData()->GetVectors()->SetTuple3(0, 1, 2, 3);
@@ -668,7 +670,7 @@ TEST(SteerableNoiseFilter, EveryPropertyIsPrinted)
   vtkNew<vtkSteerableNoiseFilter> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* name : { "FeatureSize", "Quality", "MinimumEigenvalue", "EigenvalueSum",
+  for (const char* name : { "FeatureSize", "StreakLength", "Quality", "MinimumEigenvalue", "EigenvalueSum",
          "LatticeWindow", "Strength", "StrengthMode", "ReferenceMagnitude", "Normalization",
          "FollowCurvature", "Basis", "Density", "Phase", "Animate", "Speed", "TimePeriod",
          "Octaves", "Lacunarity", "Gain", "Turbulence", "Fade", "Falloff", "Lattice", "GradientSet",

@@ -17,8 +17,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FuzzBytes bytes(data, size);
   NoiseParameters p;
   p.FeatureSize = bytes.TakeNumber();
+  p.StreakLength = bytes.TakeBool() ? 6.0 : bytes.TakeNumber();
   p.MinimumEigenvalue = bytes.TakeBool() ? 0.5 : bytes.TakeNumber();
-  p.EigenvalueSum = bytes.TakeBool() ? 4.0 : bytes.TakeNumber();
+  p.EigenvalueSum = bytes.TakeBool() ? 3.2 : bytes.TakeNumber();
   p.LatticeWindow = bytes.TakeBelow(4) != 0;
   p.AnisotropicWeight = bytes.TakeBelow(4) != 0;
   // Without the weight all corners in the window count, at Quality 8 up to 250 000 for a sample.

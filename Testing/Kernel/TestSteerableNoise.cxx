@@ -34,6 +34,10 @@ constexpr double BentSurfaceBound = 2.2e-6;
  */
 constexpr double VariantBound = 4e-6;
 constexpr double LooseBound = 7e-6;
+/// The sag of a bent streak is half its length, and so grows what its rounding does.
+constexpr double LongBound = 1.1e-5;
+/// Variants without the window reach 2.5 times as far as at Quality 2.
+constexpr double FreeVariantFactor = 2.0;
 
 const char* NameOf(Steering steering)
 {
@@ -141,7 +145,7 @@ void ExpectReferenceAtAllLengths(Normalization normalization, double bound = Bou
     const int count = N == 2 ? 2000 : length <= 6 ? 500 : length <= 10 ? 100 : 30;
     ExpectReferenceOfModel<N>("StreakLength " + std::to_string(length), parameters, count,
       normalization != Normalization::UnitVariance || N == 3, 1 + length,
-      length <= 6 ? bound : std::max(bound, LooseBound));
+      length <= 6 ? bound : std::max(bound, LongBound));
   }
 }
 
@@ -394,7 +398,7 @@ void ExpectReferenceOfVariants()
           ExpectReference<N>(
             std::to_string(N) + "D variant " + variant.Name + (paper ? ", paper's model" : ""),
             parameters, RandomSamples(N == 2 ? 400 : paper ? 80 : 20, 50.0, perWorldUnit, 5),
-            steering, variant.Bound);
+            steering, paper ? variant.Bound : FreeVariantFactor * variant.Bound);
         }
       }
     }
@@ -818,12 +822,14 @@ TEST(SteerableNoise, EqualsTheReferenceOnUnusualImages)
   {
     for (NoiseParameters changed : { NoiseParameters(), parameters })
     {
+      const bool paper = changed.LatticeWindow;
       Variants()[i].Change(changed);
       changed.FeatureSize = 1.5;
       grid = SmallGrid(2);
       grid.Dimensions = { 21, 9, 1 };
       ExpectReferenceOfImages<2>(changed, grid, Swirl,
-        std::string("2D image of ") + Variants()[i].Name, Variants()[i].Bound);
+        std::string("2D image of ") + Variants()[i].Name,
+        (paper ? 1.0 : FreeVariantFactor) * Variants()[i].Bound);
     }
   }
   // Oblique axes in space.

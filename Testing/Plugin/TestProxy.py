@@ -82,9 +82,9 @@ pt.check(
 
 # Each property through the proxy changes the noise.
 CHANGES = dict(
-    FeatureSize=0.5, Quality=0, MinimumEigenvalue=0.2, EigenvalueSum=6.0, LatticeWindow=0,
+    FeatureSize=0.5, StreakLength=3, EigenvalueSum=6.0, LatticeWindow=1,
     Strength=0.5, StrengthMode="Magnitude", Normalization="None", FollowCurvature=0, Basis="Value",
-    Phase=0.3, Animate=1, Octaves=2, Turbulence=1, Fade="Cubic", Falloff="Radial",
+    Phase=0.3, Animate=1, Octaves=2, Turbulence=1, Fade="Cubic",
     Lattice="Jittered", GradientSet="Perlin", Period=[4, 4, 0], MaskThreshold=0.5, Seed=7,
 )
 for name, value in CHANGES.items():
@@ -92,6 +92,16 @@ for name, value in CHANGES.items():
     simple.UpdatePipeline(proxy=changed)
     other = pt.array(changed.GetClientSideObject().GetOutput())
     pt.check(numpy.isfinite(other).all() and abs(other - values).max() > 1e-3, name + " matters")
+    simple.Delete(changed)
+# Those of the paper's own model change the noise with its window.
+paper = simple.SteerableNoise(Input=wake, LatticeWindow=1)
+simple.UpdatePipeline(proxy=paper)
+values = pt.array(paper.GetClientSideObject().GetOutput())
+for name, value in dict(Quality=0, MinimumEigenvalue=0.2, Falloff="Radial").items():
+    changed = simple.SteerableNoise(Input=wake, LatticeWindow=1, **{name: value})
+    simple.UpdatePipeline(proxy=changed)
+    other = pt.array(changed.GetClientSideObject().GetOutput())
+    pt.check(abs(other - values).max() > 1e-3, name + " matters with LatticeWindow")
     simple.Delete(changed)
 fine = simple.SteerableNoise(Input=wake, Magnification=2, OutputMetric=1, ResultArrayName="n")
 simple.UpdatePipeline(proxy=fine)

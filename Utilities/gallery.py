@@ -121,7 +121,7 @@ def over_speed():
     speed = numpy.linalg.norm(field("velocity"), axis=-1)
     colors = GetColorTransferFunction("speed")
     # ParaView 6.1 has shortened the name of the preset.
-    colors.ApplyPreset("Viridis" if GetParaViewVersion() >= 6.1 else "Viridis (matplotlib)", True)
+    colors.ApplyPreset("Viridis" if GetParaViewVersion() >= (6, 1) else "Viridis (matplotlib)", True)
     colors.RescaleTransferFunction(0.0, 1.5)
     function = colors.GetClientSideObject()
     table = numpy.zeros((33, 3))

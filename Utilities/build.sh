@@ -4,6 +4,10 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${STEERABLENOISE_BUILD_DIR:-$root/build}
 
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
+}
+
 install_packages() {
   local version packages missing=()
   version=$(. /etc/os-release && echo "${VERSION_ID:-sid}")
@@ -24,11 +28,12 @@ install_packages() {
     dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
   done
   if ((${#missing[@]})); then
-    echo "Installing: ${missing[*]}"
-    local sudo=
-    [ "$(id -u)" = 0 ] || sudo=sudo
-    $sudo apt-get update -qq
-    DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends "${missing[@]}"
+    echo "Installing ${#missing[@]} packages and what they need (a fresh machine: minutes, gigabytes): ${missing[*]}"
+    local log
+    log=$(mktemp)
+    { as_root apt-get update -qq && as_root env DEBIAN_FRONTEND=noninteractive \
+      apt-get install -y -qq --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 || { cat "$log"; return 1; }
+    rm -f "$log"
   fi
   mend_python_targets
 }
@@ -36,12 +41,11 @@ install_packages() {
 # Debian 13 and sid export Python targets as vtkX.so, but ship vtkX.cpython-….so: find_package(ParaView)
 # refuses them until plain names stand beside the files.
 mend_python_targets() {
-  [ "$(id -u)" = 0 ] || return 0
   local file plain
-  for file in /usr/lib/python3*/dist-packages/{vtkmodules,paraview,paraview/modules}/*.cpython-*.so; do
+  for file in /usr/lib/python3*/dist-packages/{vtkmodules,paraview,paraview/modules,paraview/incubator}/*.cpython-*.so; do
     [ -e "$file" ] || continue
     plain=${file%%.cpython-*}.so
-    [ -e "$plain" ] || ln -s "$(basename "$file")" "$plain"
+    [ -e "$plain" ] || as_root ln -s "$(basename "$file")" "$plain"
   done
 }
 

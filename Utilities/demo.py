@@ -46,14 +46,16 @@ speed = Show(wake, view)
 speed.Representation = "Surface"
 ColorBy(speed, ("CELLS", "velocity", "Magnitude"))
 speedColors = GetColorTransferFunction("velocity")
-speedColors.ApplyPreset("Viridis (matplotlib)", True)
+# ParaView 6.1 has shortened the name of the preset.
+speedColors.ApplyPreset("Viridis" if GetParaViewVersion() >= (6, 1) else "Viridis (matplotlib)", True)
 speedColors.RescaleTransferFunction(0.0, 1.5)
 speed.SetScalarBarVisibility(view, False)
 colors.RGBPoints = [-2.0, 0, 0, 0, -0.01, 0, 0, 0, 0.01, 1, 1, 1, 2.0, 1, 1, 1]
 colors.EnableOpacityMapping = 1
 opacity = GetOpacityTransferFunction("SteerableNoise")
 opacity.Points = [-2.0, 0.75, 0.5, 0, 0.0, 0.0, 0.5, 0, 2.0, 0.55, 0.5, 0]
-grey.Position = [0, 0, 0.01]
+# Called Position before ParaView 5.12.
+setattr(grey, "Translation" if GetParaViewVersion() >= (5, 12) else "Position", [0, 0, 0.01])
 path = os.path.join(folder, "wake_noise_over_speed.png")
 SaveScreenshot(path, view)
 print(path)

@@ -120,7 +120,8 @@ def over_speed():
     noise = field(MaskThreshold=1e-6)
     speed = numpy.linalg.norm(field("velocity"), axis=-1)
     colors = GetColorTransferFunction("speed")
-    colors.ApplyPreset("Viridis (matplotlib)", True)
+    # ParaView 6.1 has shortened the name of the preset.
+    colors.ApplyPreset("Viridis" if GetParaViewVersion() >= (6, 1) else "Viridis (matplotlib)", True)
     colors.RescaleTransferFunction(0.0, 1.5)
     function = colors.GetClientSideObject()
     table = numpy.zeros((33, 3))

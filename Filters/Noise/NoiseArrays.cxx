@@ -32,7 +32,7 @@ struct CopyTuples
     const auto range =
       vtk::DataArrayTupleRange(array, begin, begin + static_cast<vtkIdType>(count));
     const int components = array->GetNumberOfComponents();
-    double tuple[9];
+    double tuple[9] = {};
     std::size_t i = 0;
     for (const auto values : range)
     {

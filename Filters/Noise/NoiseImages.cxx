@@ -85,6 +85,10 @@ void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int fac
   {
     // A flat axis stays flat; the others keep their first and last sample.
     const bool flat = whole[2 * axis] == whole[2 * axis + 1];
+    if (whole[2 * axis] > whole[2 * axis + 1])
+    {
+      continue; // empty stays empty: (0, -1) times 4 is no extent
+    }
     whole[2 * axis] *= factor;
     whole[2 * axis + 1] *= factor;
     spacing[axis] /= factor;
@@ -103,6 +107,11 @@ void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo,
   input->GetExtent(coarseExtent);
   int extent[6];
   outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
+  if (input->GetNumberOfPoints() == 0)
+  {
+    output->ShallowCopy(input);
+    return;
+  }
   double spacing[3];
   int fineDims[3];
   int coarseDims[3];
@@ -121,7 +130,7 @@ void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo,
   output->SetOrigin(input->GetOrigin());
   output->SetDirectionMatrix(input->GetDirectionMatrix());
   output->GetFieldData()->PassData(input->GetFieldData());
-  if (input->GetNumberOfPoints() == 0 || output->GetNumberOfPoints() == 0)
+  if (output->GetNumberOfPoints() == 0)
   {
     return;
   }

@@ -655,7 +655,7 @@ bool vtkSteerableNoiseMapper::SetOptionsFrom(vtkSteerableNoiseFilter* filter)
   }
   this->SetFeatureSizeMode(WORLD);
   this->SetFeatureSize(filter->GetFeatureSize());
-//TEMP  this->SetStreakLength(filter->GetStreakLength());
+  this->SetStreakLength(filter->GetStreakLength());
   this->SetEigenvalueSum(filter->GetEigenvalueSum());
   this->SetStrength(filter->GetStrength());
   this->SetStrengthMode(filter->GetStrengthMode());

@@ -454,10 +454,8 @@ void vtkSteerableNoiseMapper::FindFields()
   Internals& internals = *this->Internal;
   vtkDataObject* input = this->GetInputDataObject(0, 0);
   std::map<vtkPolyData*, Internals::Block> blocks;
-  vtkBoundingBox bounds;
   noise::ShaderVariant variant;
   internals.AnyNoise = false;
-  internals.OwnLongest = 0.0;
   const vtkMTimeType chosen = std::max(
     this->GetInputArrayInformation(0)->GetMTime(), internals.PerCellTime.GetMTime());
   std::string why;
@@ -468,7 +466,6 @@ void vtkSteerableNoiseMapper::FindFields()
       {
         return;
       }
-      bounds.AddBounds(data->GetBounds());
       bool cells = false;
       std::string whyNot;
       vtkDataArray* array =
@@ -500,9 +497,11 @@ void vtkSteerableNoiseMapper::FindFields()
       variant.Tensors = tensors;
       variant.PerCell = perCell;
       internals.AnyNoise = true;
-      internals.OwnLongest = std::max(internals.OwnLongest, block.Fields.Longest);
     });
   internals.Blocks.swap(blocks);
+  vtkBoundingBox bounds;
+  internals.OwnLongest = 0.0;
+  this->AddExtremes(input, bounds, internals.OwnLongest);
   internals.OwnDiagonal = bounds.IsValid() ? bounds.GetDiagonalLength() : 0.0;
   if (variant.Tensors != internals.Variant.Tensors || variant.PerCell != internals.Variant.PerCell)
   {
@@ -618,6 +617,29 @@ void vtkSteerableNoiseMapper::SetMaskColor(double red, double green, double blue
 void vtkSteerableNoiseMapper::GetMaskColor(double color[3])
 {
   std::copy_n(this->Internal->Options.MaskColor.begin(), 3, color);
+}
+
+void vtkSteerableNoiseMapper::AddExtremes(
+  vtkDataObject* input, vtkBoundingBox& bounds, double& longest)
+{
+  ForEachPolyData(input,
+    [&](vtkPolyData* data)
+    {
+      if (data->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      bounds.AddBounds(data->GetBounds());
+      bool cells = false;
+      std::string why;
+      if (vtkDataArray* array =
+            noise::FindSteeringArray(data, this->GetInputArrayInformation(0), cells, why))
+      {
+        double range[2];
+        array->GetFiniteRange(range, -1); // as the filter has it
+        longest = std::max(longest, range[1]);
+      }
+    });
 }
 
 void vtkSteerableNoiseMapper::SetSharedExtremes(double diagonal, double longest)

@@ -4,11 +4,10 @@
 
 #include "CellSums.h"
 #include "MetricTensor.h"
+#include "NoiseCells.h"
 #include "NoiseCurvature.h"
 #include "NoiseThreads.h"
 
-#include "vtkCell.h"
-#include "vtkCellCenters.h"
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
@@ -25,7 +24,6 @@
 #include "vtkSMPTools.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <Eigen/Geometry>
 
@@ -38,90 +36,6 @@ namespace noise
 {
 namespace
 {
-/// VTK's cells square and cube coordinates; past this they overflow.
-constexpr double LargestCoordinate = 1e50;
-
-bool IsUsable(vtkPoints* points, vtkIdType point)
-{
-  double x[3];
-  points->GetPoint(point, x);
-  return std::all_of(x, x + 3, [](double value) { return std::abs(value) <= LargestCoordinate; });
-}
-
-/// Cells whose position is that of one of their simplices, of which VTK may find none.
-bool ConsistsOfSimplices(int cellType)
-{
-  return cellType == VTK_TRIANGLE_STRIP || cellType == VTK_CONVEX_POINT_SET;
-}
-
-/**
- * The cells as VTK can take them when it looks for their centres: it writes out of bounds (VTK 9.2) where a
- * strip or a convex point set is degenerate, and where higher-order cells have no finite coordinates. Such
- * cells become empty.
- */
-vtkSmartPointer<vtkUnstructuredGrid> MendCells(vtkUnstructuredGrid* grid)
-{
-  vtkPoints* points = grid->GetPoints();
-  vtkUnsignedCharArray* types = grid->GetDistinctCellTypesArray();
-  bool mend = false;
-  for (vtkIdType i = 0; !mend && i < types->GetNumberOfValues(); ++i)
-  {
-    mend = ConsistsOfSimplices(types->GetValue(i));
-  }
-  for (vtkIdType i = 0; !mend && i < points->GetNumberOfPoints(); ++i)
-  {
-    mend = !IsUsable(points, i);
-  }
-  if (!mend)
-  {
-    return grid;
-  }
-  auto mended = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  mended->SetPoints(points);
-  mended->Allocate(grid->GetNumberOfCells());
-  vtkNew<vtkIdList> ids;
-  vtkNew<vtkIdList> simplices;
-  vtkNew<vtkPoints> corners;
-  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
-  {
-    int type = grid->GetCellType(cell);
-    grid->GetCellPoints(cell, ids);
-    bool keep = std::all_of(
-      ids->begin(), ids->end(), [&](vtkIdType point) { return IsUsable(points, point); });
-    if (keep && ConsistsOfSimplices(type))
-    {
-      simplices->Reset();
-      grid->GetCell(cell)->Triangulate(0, simplices, corners);
-      keep = simplices->GetNumberOfIds() > 0;
-    }
-    if (!keep)
-    {
-      type = VTK_EMPTY_CELL;
-      ids->Reset();
-    }
-    else if (type == VTK_POLYHEDRON)
-    {
-      grid->GetFaceStream(cell, ids);
-    }
-    mended->InsertNextCell(type, ids);
-  }
-  return mended;
-}
-
-/// Stands in for the centre of a cell that VTK cannot find one of.
-void SetMeanOfPoints(vtkUnstructuredGrid* grid, vtkIdType cell, vtkDataArray* centers)
-{
-  vtkNew<vtkIdList> ids;
-  grid->GetCellPoints(cell, ids);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const vtkIdType point : *ids)
-  {
-    sum += Eigen::Map<const Eigen::Vector3d>(grid->GetPoint(point));
-  }
-  sum /= std::max<double>(1.0, ids->GetNumberOfIds());
-  centers->SetTuple(cell, sum.data());
-}
-
 /// Unit normal of the plane through points (a strip's first three), 0 if there is none.
 Eigen::Vector3d GetNormal(vtkDataSet* dataset, int cellType, vtkIdList* ids)
 {
@@ -309,18 +223,7 @@ void Samples::SetPoints()
   if (this->Cells)
   {
     vtkNew<vtkDoubleArray> centers;
-    centers->SetNumberOfComponents(3);
-    centers->SetNumberOfTuples(this->DataSet->GetNumberOfCells());
-    auto* grid = vtkUnstructuredGrid::SafeDownCast(this->DataSet);
-    vtkSmartPointer<vtkUnstructuredGrid> mended = grid ? MendCells(grid) : nullptr;
-    vtkCellCenters::ComputeCellCenters(grid ? mended.Get() : this->DataSet, centers);
-    for (vtkIdType cell = 0; mended != grid && cell < mended->GetNumberOfCells(); ++cell)
-    {
-      if (mended->GetCellType(cell) == VTK_EMPTY_CELL)
-      {
-        SetMeanOfPoints(grid, cell, centers);
-      }
-    }
+    WithThreads([&] { ComputeCellCenters(this->DataSet, centers); });
     this->CellCenters = centers;
     this->Positions = MakePositionReader(centers);
   }

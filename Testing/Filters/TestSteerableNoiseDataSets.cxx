@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkSteerableNoiseFilter on every type of dataset and composite, and on what is wrong with them.
 #include "FilterTestHelpers.h"
+#include "NoiseCells.h"
 
 #include "vtkAMRBox.h"
 #include "vtkAppendFilter.h"
@@ -37,6 +38,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <map>
+#include <utility>
 
 using namespace filtertest;
 
@@ -951,13 +954,32 @@ TEST_P(SteerableNoiseBadInput, GivesWhatItsCaseSays)
 INSTANTIATE_TEST_SUITE_P(Table, SteerableNoiseBadInput, testing::ValuesIn(BadInput()),
   [](const testing::TestParamInfo<Case>& info) { return info.param.Name; });
 
-/// VTK 9.2 writes out of bounds where some of these are differentiated.
-TEST(SteerableNoiseBadInput, EveryTypeOfCellSurvivesBadCoordinates)
+/// Points in general position: no two at one place, no four in one plane.
+std::vector<double> Scatter(std::size_t count)
 {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> coordinates;
+  for (std::size_t i = 1; i <= count; ++i)
+  {
+    for (const double step : { 0.7548776662, 0.5698402910, 0.8191725134 })
+    {
+      coordinates.push_back(4.0 * std::fmod(step * i, 1.0));
+    }
+  }
+  return coordinates;
+}
+
+TEST(SteerableNoiseDataSets, EveryTypeOfCellGetsNoise)
+{
+  // Higher-order cells of any order have as many points as are given: here the least there are.
+  const std::map<int, std::size_t> sizes = { { VTK_LAGRANGE_CURVE, 3 },
+    { VTK_LAGRANGE_TRIANGLE, 6 }, { VTK_LAGRANGE_QUADRILATERAL, 9 },
+    { VTK_LAGRANGE_TETRAHEDRON, 10 }, { VTK_LAGRANGE_HEXAHEDRON, 27 }, { VTK_LAGRANGE_WEDGE, 18 },
+    { VTK_BEZIER_CURVE, 3 }, { VTK_BEZIER_TRIANGLE, 6 }, { VTK_BEZIER_QUADRILATERAL, 9 },
+    { VTK_BEZIER_TETRAHEDRON, 10 }, { VTK_BEZIER_HEXAHEDRON, 27 }, { VTK_BEZIER_WEDGE, 18 } };
   const int display = vtkObject::GetGlobalWarningDisplay();
-  vtkObject::GlobalWarningDisplayOff(); // vtkTetra and others speak of their Jacobians
+  vtkObject::GlobalWarningDisplayOff(); // vtkGenericCell speaks of types that do not exist
   vtkNew<vtkGenericCell> kind;
+  int types = 0;
   for (int type = VTK_VERTEX; type < VTK_NUMBER_OF_CELL_TYPES; ++type)
   {
     kind->SetCellTypeToEmptyCell();
@@ -966,23 +988,64 @@ TEST(SteerableNoiseBadInput, EveryTypeOfCellSurvivesBadCoordinates)
     {
       continue;
     }
-    const auto count =
-      static_cast<std::size_t>(kind->GetNumberOfPoints() > 0 ? kind->GetNumberOfPoints() : 6);
-    for (const double scale : { 0.0, 1.0, 1e300, nan })
-    {
-      std::vector<double> coordinates;
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        coordinates.insert(coordinates.end(), { scale * (i % 3), scale * (i % 2), scale });
-      }
-      auto grid = Cells(type, coordinates);
-      EXPECT_EQ(Values(Apply(grid).Output).size(), count) << "cell type " << type << ", " << scale;
-      grid->GetPointData()->Initialize();
-      AddFlow(grid, true);
-      EXPECT_EQ(Values(Apply(grid).Output).size(), 1u) << "cell type " << type << ", " << scale;
-    }
+    const auto size = sizes.find(type);
+    const std::size_t count = size != sizes.end() ? size->second
+      : kind->GetNumberOfPoints() > 0 ? static_cast<std::size_t>(kind->GetNumberOfPoints())
+                                      : 6;
+    auto grid = Cells(type, Scatter(count));
+    const std::vector<float> points = Values(Apply(grid).Output);
+    EXPECT_EQ(points.size(), count) << "cell type " << type;
+    EXPECT_TRUE(AllFinite(points)) << "cell type " << type;
+    grid->GetPointData()->Initialize();
+    AddFlow(grid, true);
+    const std::vector<float> cells = Values(Apply(grid).Output);
+    EXPECT_EQ(cells.size(), 1u) << "cell type " << type;
+    EXPECT_TRUE(AllFinite(cells)) << "cell type " << type;
+    ++types;
   }
   vtkObject::SetGlobalWarningDisplay(display);
+  EXPECT_GT(types, 30);
+}
+
+/// What VTK is asked for the centres of (GetPlainCell says what goes wrong in VTK 9.2).
+TEST(SteerableNoiseDataSets, CellsArriveInVTKAsItCanTakeThem)
+{
+  const auto plain = [](vtkDataSet* dataset)
+  {
+    vtkNew<vtkIdList> ids;
+    const int type = noise::GetPlainCell(dataset, 0, ids);
+    return std::make_pair(type, std::vector<vtkIdType>(ids->begin(), ids->end()));
+  };
+  using Ids = std::vector<vtkIdType>;
+  const std::vector<double> zigzag = { 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 2, 0, 0, 2, 1, 0 };
+  // A strip arrives as the triangle in its middle, at whose centre it is for VTK.
+  auto strip = Cells(VTK_TRIANGLE_STRIP, zigzag);
+  EXPECT_EQ(plain(strip), std::make_pair(int(VTK_TRIANGLE), Ids({ 2, 3, 4 })));
+  vtkNew<vtkDoubleArray> centers;
+  noise::ComputeCellCenters(strip, centers);
+  EXPECT_NEAR(centers->GetComponent(0, 0), 4.0 / 3.0, 1e-12);
+  EXPECT_NEAR(centers->GetComponent(0, 1), 1.0 / 3.0, 1e-12);
+  vtkNew<vtkPolyData> surface;
+  surface->SetPoints(strip->GetPoints());
+  vtkNew<vtkCellArray> strips;
+  strips->InsertNextCell({ 0, 1, 2, 3 });
+  surface->SetStrips(strips);
+  EXPECT_EQ(plain(surface), std::make_pair(int(VTK_TRIANGLE), Ids({ 1, 2, 3 })));
+
+  const std::vector<double> corners = { 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 2 };
+  EXPECT_EQ(plain(Cells(VTK_TETRA, corners)), std::make_pair(int(VTK_TETRA), Ids({ 0, 1, 2, 3 })));
+  auto hull = Cells(VTK_CONVEX_POINT_SET, corners);
+  EXPECT_EQ(plain(hull), std::make_pair(int(VTK_EMPTY_CELL), Ids({ 0, 1, 2, 3 })));
+  noise::ComputeCellCenters(hull, centers);
+  EXPECT_NEAR(centers->GetComponent(0, 2), 0.5, 1e-12) << "the mean of its points";
+
+  // Coordinates that are none, on a cell that VTK takes anyway.
+  for (const double bad : { std::numeric_limits<double>::quiet_NaN(),
+         std::numeric_limits<double>::infinity(), 1e60, -1e300 })
+  {
+    auto triangle = Cells(VTK_TRIANGLE, { 0, 0, 0, 1, 0, 0, 0, bad, 0 });
+    EXPECT_EQ(plain(triangle).first, VTK_EMPTY_CELL) << bad;
+  }
 }
 
 TEST(SteerableNoiseBadInput, TheTableHasSixtyCases)

@@ -12,7 +12,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <limits>
+#include <utility>
 
 namespace noise
 {
@@ -193,6 +196,41 @@ private:
   bool Rotated;
 };
 
+class LeavingOutReader : public steerable::TupleReader<float>
+{
+public:
+  LeavingOutReader(std::unique_ptr<steerable::TupleReader<float>> reader, int components,
+    const std::vector<unsigned char>& left)
+    : Reader(std::move(reader))
+    , Components(components)
+    , Left(left)
+  {
+  }
+  const float* Read(std::size_t first, std::size_t count, float* scratch) const override
+  {
+    const float* tuples = this->Reader->Read(first, count, scratch);
+    const auto values = static_cast<std::ptrdiff_t>(count * this->Components);
+    if (tuples != scratch)
+    {
+      std::copy(tuples, tuples + values, scratch);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      if (this->Left[first + i])
+      {
+        std::fill_n(scratch + i * this->Components, this->Components,
+          std::numeric_limits<float>::quiet_NaN());
+      }
+    }
+    return scratch;
+  }
+
+private:
+  std::unique_ptr<steerable::TupleReader<float>> Reader;
+  std::size_t Components;
+  const std::vector<unsigned char>& Left;
+};
+
 class PositionReader : public steerable::TupleReader<double>
 {
 public:
@@ -261,6 +299,48 @@ std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray*
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataSet* dataset)
 {
   return std::make_unique<DataSetPositionReader>(dataset);
+}
+
+std::unique_ptr<steerable::TupleReader<float>> LeaveOut(
+  std::unique_ptr<steerable::TupleReader<float>> reader, int components,
+  const std::vector<unsigned char>& left)
+{
+  return std::make_unique<LeavingOutReader>(std::move(reader), components, left);
+}
+
+void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, double* lengths)
+{
+  const int components = array->GetNumberOfComponents();
+  ForEachTuple(array, first, count,
+    [&](std::size_t i, const double* t)
+    {
+      double sum = 0.0;
+      if (components == 4)
+      {
+        sum = t[0] * t[0] + t[3] * t[3] + 0.5 * (t[1] + t[2]) * (t[1] + t[2]);
+      }
+      else if (components == 6)
+      {
+        sum = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] +
+          2.0 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
+      }
+      else if (components == 9)
+      {
+        for (int row = 0; row < 3; ++row)
+        {
+          for (int c = 0; c < 3; ++c)
+          {
+            const double mean = 0.5 * (t[3 * row + c] + t[3 * c + row]);
+            sum += mean * mean;
+          }
+        }
+      }
+      else
+      {
+        sum = components > 2 ? t[0] * t[0] + t[1] * t[1] + t[2] * t[2] : t[0] * t[0] + t[1] * t[1];
+      }
+      lengths[i] = std::sqrt(sum);
+    });
 }
 
 vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 class vtkDataArray;
 class vtkDataSet;
@@ -51,6 +52,20 @@ std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray*
 
 /// Points of a dataset without an array of them; its GetPoint must be safe to call from threads.
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataSet* dataset);
+
+/**
+ * Tuples of `reader`, which it takes over, with NaN where `left` out: one value for each, not 0 where the
+ * sample shall neither have a direction nor lend one to its neighbours. `left` has to outlive it.
+ */
+std::unique_ptr<steerable::TupleReader<float>> LeaveOut(
+  std::unique_ptr<steerable::TupleReader<float>> reader, int components,
+  const std::vector<unsigned char>& left);
+
+/**
+ * Lengths of the tuples [first, first + count): Euclidean for vectors, all components counted; for tensors
+ * the Frobenius norm of their symmetric part.
+ */
+void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, double* lengths);
 
 /**
  * The array that steers the noise when nobody named one: active vectors, active tensors, else the

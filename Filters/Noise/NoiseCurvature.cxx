@@ -148,7 +148,8 @@ void ReadCell(vtkDataSet* dataset, vtkIdType id, Vector3d side, bool keepAll, vt
 
 /// Of points, from the cells around them.
 vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
-  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, double cellSize)
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden,
+  double cellSize)
 {
   const CellDimensions dimensions(dataset);
   auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfPoints());
@@ -159,7 +160,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
     {
       const int type = dataset->GetCellType(id);
       const int dimension = dimensions.Get(type);
-      if (dimension == 0)
+      if (dimension == 0 || hidden.HasCell(id))
       {
         return;
       }
@@ -233,14 +234,18 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
 } // namespace
 
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
-  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells, double cellSize)
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells,
+  const HiddenSamples& hidden, double cellSize)
 {
-  return cells ? CurvatureOfCells(dataset, vectors) : CurvatureOfPoints(dataset, vectors, cellSize);
+  return cells ? CurvatureOfCells(dataset, vectors)
+               : CurvatureOfPoints(dataset, vectors, hidden, cellSize);
 }
 
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions)[3],
-  const steerable::TupleReader<double>& positions, const steerable::TupleReader<float>& vectors)
+  const steerable::TupleReader<double>& positions, const steerable::TupleReader<float>& vectors,
+  const std::vector<unsigned char>& hidden)
 {
+  const auto isThere = [&](vtkIdType sample) { return hidden.empty() || !hidden[sample]; };
   const vtkIdType strides[3] = { 1, dimensions[0],
     static_cast<vtkIdType>(dimensions[0]) * dimensions[1] };
   const vtkIdType count = strides[2] * dimensions[2];
@@ -280,8 +285,9 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
         for (int axis = 0; axis < 3 && !u.isZero(0.0); ++axis)
         {
           const vtkIdType index = i / strides[axis] % dimensions[axis];
-          const vtkIdType before = index > 0 ? i - strides[axis] : i;
-          const vtkIdType after = index + 1 < dimensions[axis] ? i + strides[axis] : i;
+          const vtkIdType before = index > 0 && isThere(i - strides[axis]) ? i - strides[axis] : i;
+          const vtkIdType after =
+            index + 1 < dimensions[axis] && isThere(i + strides[axis]) ? i + strides[axis] : i;
           if (before < after)
           {
             getDifferences(before, after, fit);

@@ -30,6 +30,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace noise
@@ -69,7 +70,7 @@ bool IsGhostCell(vtkUnsignedCharArray* ghosts, vtkIdType cell)
 {
   return ghosts &&
     (ghosts->GetValue(cell) &
-      (vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL));
+      vtkDataSetAttributes::DUPLICATECELL);
 }
 
 /// Points along each axis of a structured dataset; false for the others.
@@ -126,7 +127,21 @@ Samples::Samples(
   : DataSet(dataset)
   , Array(array)
   , Cells(cells)
+  , Hidden(dataset)
 {
+  // Before anything looks at neighbours: what is hidden has no direction.
+  const bool vectors = IsVector(array->GetNumberOfComponents());
+  const auto setSteering = [&](bool flat)
+  {
+    this->Steering = vectors ? MakeVectorReader(array, this->InAxes, flat)
+                             : MakeTensorReader(array, this->InAxes, flat);
+    const std::vector<unsigned char>& hidden = this->Hidden.Get(cells);
+    if (!hidden.empty())
+    {
+      this->Steering = LeaveOut(std::move(this->Steering), vectors ? 3 : 6, hidden);
+    }
+    (vectors ? this->Field.Vectors : this->Field.Tensors) = this->Steering.get();
+  };
   if (auto* image = vtkImageData::SafeDownCast(dataset))
   {
     this->SetGrid(image, wholeExtent);
@@ -136,17 +151,7 @@ Samples::Samples(
   {
     this->SetPoints();
   }
-  const bool flat = this->Dimension == 2;
-  if (IsVector(array->GetNumberOfComponents()))
-  {
-    this->Steering = MakeVectorReader(array, this->InAxes, flat);
-    this->Field.Vectors = this->Steering.get();
-  }
-  else
-  {
-    this->Steering = MakeTensorReader(array, this->InAxes, flat);
-    this->Field.Tensors = this->Steering.get();
-  }
+  setSteering(this->Dimension == 2);
 }
 
 Samples::~Samples() = default;
@@ -265,7 +270,10 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
     : this->DataSet->GetPointData();
   vtkDataArray* own = attributes->GetNormals();
   const auto isSurface = [&](vtkIdType cell)
-  { return dimensions.Get(this->DataSet->GetCellType(cell)) == 2; };
+  {
+    return dimensions.Get(this->DataSet->GetCellType(cell)) == 2 &&
+      (this->Cells || !this->Hidden.HasCell(cell));
+  };
 
   if (this->Cells)
   {
@@ -322,7 +330,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; dimensions.Has(3) && cell < this->DataSet->GetNumberOfCells(); ++cell)
   {
-    if (dimensions.Get(this->DataSet->GetCellType(cell)) == 3)
+    if (dimensions.Get(this->DataSet->GetCellType(cell)) == 3 && !this->Hidden.HasCell(cell))
     {
       this->DataSet->GetCellPoints(cell, ids);
       for (const vtkIdType point : *ids)
@@ -401,12 +409,14 @@ void Samples::ComputeCurvature(double featureSize)
       samples = this->Cells ? std::max(samples - 1, 1) : samples;
     }
     this->Curvature =
-      ComputeStreamlineCurvature(dimensions, *this->Positions, *this->Field.Vectors);
+      ComputeStreamlineCurvature(
+      dimensions, *this->Positions, *this->Field.Vectors, this->Hidden.Get(this->Cells));
   }
   else
   {
     this->Curvature =
-      ComputeStreamlineCurvature(this->DataSet, *this->Field.Vectors, this->Cells, featureSize);
+      ComputeStreamlineCurvature(
+      this->DataSet, *this->Field.Vectors, this->Cells, this->Hidden, featureSize);
   }
   this->CurvatureReader = MakeVectorReader(this->Curvature, WorldAxes, false);
   this->Field.Curvature = this->CurvatureReader.get();
@@ -479,7 +489,7 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkI
 }
 
 void AddSampleSpacing(
-  vtkDataSet* dataset, vtkIdType cellsAtMost, double& largest, double& sum, double& count)
+  vtkDataSet* dataset, const HiddenSamples& hidden, vtkIdType cellsAtMost, double& largest, double& sum, double& count)
 {
   if (auto* image = vtkImageData::SafeDownCast(dataset))
   {
@@ -501,7 +511,7 @@ void AddSampleSpacing(
   vtkUnsignedCharArray* ghosts = dataset->GetCellGhostArray();
   for (vtkIdType id = 0; id < cells; id += step)
   {
-    if (IsGhostCell(ghosts, id))
+    if (hidden.HasCell(id) || IsGhostCell(ghosts, id))
     {
       continue;
     }

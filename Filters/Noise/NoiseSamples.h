@@ -9,6 +9,7 @@
 #define NoiseSamples_h
 
 #include "NoiseArrays.h"
+#include "NoiseGhosts.h"
 
 #include "vtkSmartPointer.h"
 
@@ -42,6 +43,9 @@ public:
   /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.
   void ComputeCurvature(double featureSize);
 
+  /// What neither shows nor changes its neighbours; it gets isotropic noise.
+  const HiddenSamples& GetHidden() const { return this->Hidden; }
+
   /// Noise of the parts [begin, end) into an array of GetNumberOfSamples() values.
   steerable::EvaluationCounts Evaluate(const steerable::SteerableNoise& kernel, std::size_t begin,
     std::size_t end, float* noise) const;
@@ -60,6 +64,7 @@ private:
   vtkDataSet* DataSet;
   vtkDataArray* Array;
   bool Cells;
+  HiddenSamples Hidden;
   int Dimension = 3;
   bool IsGrid = false;
   steerable::ImageGrid Grid;
@@ -76,11 +81,11 @@ private:
 
 /**
  * Typical distance of samples: the largest spacing of an image; for other datasets the sum over its
- * cells (ghosts left out; evenly chosen if there are more than `cellsAtMost`) of diagonal / √dimension
+ * cells (ghosts and hidden ones left out; evenly chosen if there are more than `cellsAtMost`) of diagonal / √dimension
  * goes to `sum` and their number to `count`.
  */
 void AddSampleSpacing(
-  vtkDataSet* dataset, vtkIdType cellsAtMost, double& largest, double& sum, double& count);
+  vtkDataSet* dataset, const HiddenSamples& hidden, vtkIdType cellsAtMost, double& largest, double& sum, double& count);
 } // namespace noise
 
 #endif

@@ -3,10 +3,12 @@
 #include "vtkSteerableNoiseFilter.h"
 
 #include "NoiseArrays.h"
+#include "NoiseGhosts.h"
 #include "NoiseImages.h"
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkCellData.h"
 #include "vtkCommunicator.h"
 #include "vtkCompositeDataIterator.h"
@@ -17,10 +19,12 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMath.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkRectilinearGrid.h"
+#include "vtkSMPThreadLocal.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
@@ -45,6 +49,41 @@ struct Block
   bool Cells = false;
 };
 
+/// Length of the longest finite tuple that is not hidden.
+double GetLongest(vtkDataArray* array, const std::vector<unsigned char>& hidden)
+{
+  constexpr vtkIdType chunkSize = 4096;
+  vtkSMPThreadLocal<double> longest(0.0);
+  noise::WithThreads(
+    [&]
+    {
+      vtkSMPTools::For(0, array->GetNumberOfTuples(), 16 * chunkSize,
+        [&](vtkIdType begin, vtkIdType end)
+        {
+          double& longestHere = longest.Local();
+          std::vector<double> lengths(chunkSize);
+          for (vtkIdType first = begin; first < end; first += chunkSize)
+          {
+            const vtkIdType count = std::min(chunkSize, end - first);
+            noise::ReadLengths(array, first, count, lengths.data());
+            for (vtkIdType i = 0; i < count; ++i)
+            {
+              if (std::isfinite(lengths[i]) && (hidden.empty() || !hidden[first + i]))
+              {
+                longestHere = std::max(longestHere, lengths[i]);
+              }
+            }
+          }
+        });
+    });
+  double all = 0.0;
+  for (const double here : longest)
+  {
+    all = std::max(all, here);
+  }
+  return all;
+}
+
 /// What the ranks have to agree on; all of it combines by minimum or sum.
 struct Extremes
 {
@@ -59,13 +98,28 @@ struct Extremes
   /// `magnitude`: the longest vector is asked for. `exact`: the spacing decides more than a warning.
   void Add(const Block& block, bool magnitude, bool exact)
   {
+    const noise::HiddenSamples hidden(block.DataSet);
     if (block.DataSet->GetNumberOfPoints() > 0)
     {
       double bounds[6];
       block.DataSet->GetBounds(bounds);
+      const std::vector<unsigned char>& hiddenPoints = hidden.Get(false);
+      if (!hiddenPoints.empty())
+      {
+        vtkBoundingBox visible;
+        for (vtkIdType point = 0; point < block.DataSet->GetNumberOfPoints(); ++point)
+        {
+          if (!hiddenPoints[point])
+          {
+            visible.AddPoint(block.DataSet->GetPoint(point));
+          }
+        }
+        visible.IsValid() ? visible.GetBounds(bounds) : vtkMath::UninitializeBounds(bounds);
+      }
       for (int axis = 0; axis < 3; ++axis)
       {
-        if (std::isfinite(bounds[2 * axis]) && std::isfinite(bounds[2 * axis + 1]))
+        if (bounds[2 * axis] <= bounds[2 * axis + 1] && std::isfinite(bounds[2 * axis]) &&
+          std::isfinite(bounds[2 * axis + 1]))
         {
           this->Bounds[axis] = std::min(this->Bounds[axis], bounds[2 * axis]);
           this->Bounds[3 + axis] = std::min(this->Bounds[3 + axis], -bounds[2 * axis + 1]);
@@ -74,11 +128,10 @@ struct Extremes
     }
     if (magnitude)
     {
-      double range[2];
-      block.Array->GetFiniteRange(range, -1);
-      this->LongestVector = std::max(this->LongestVector, range[1]);
+      this->LongestVector =
+        std::max(this->LongestVector, GetLongest(block.Array, hidden.Get(block.Cells)));
     }
-    noise::AddSampleSpacing(block.DataSet, exact ? 1000000 : 10000, this->LargestSpacing,
+    noise::AddSampleSpacing(block.DataSet, hidden, exact ? 1000000 : 10000, this->LargestSpacing,
       this->SpacingSum, this->SpacingCount);
   }
 
@@ -141,11 +194,11 @@ bool IsUsable(vtkDataArray* array)
       noise::IsTensor(array->GetNumberOfComponents()));
 }
 
-/// Degenerate samples are counted by the kernel with the ghosts; these are the ghosts among them.
-vtkIdType CountDegenerateGhosts(const Block& block)
+/// Degenerate samples are counted by the kernel with the ghosts; these are the duplicates among them.
+vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned char>& hidden)
 {
-  auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
-    GetAttributes(block.DataSet, block.Cells)->GetArray(vtkDataSetAttributes::GhostArrayName()));
+  vtkUnsignedCharArray* ghosts = noise::GetGhosts(
+    GetAttributes(block.DataSet, block.Cells), block.Array->GetNumberOfTuples());
   if (!ghosts || !noise::IsVector(block.Array->GetNumberOfComponents()))
   {
     return 0;
@@ -154,7 +207,7 @@ vtkIdType CountDegenerateGhosts(const Block& block)
   double tuple[9];
   for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
   {
-    if (ghosts->GetValue(i))
+    if (ghosts->GetValue(i) && (hidden.empty() || !hidden[i]))
     {
       block.Array->GetTuple(i, tuple);
       double length = 0.0;
@@ -289,7 +342,7 @@ struct vtkSteerableNoiseFilter::Internals
     auto result =
       noise::NewOutputArray(this->Self->ResultArrayName, 1, samples.GetNumberOfSamples());
     float* values = result->GetPointer(0);
-    this->Counts += noise::ForEachPart(this->Self, samples.GetNumberOfParts(),
+    steerable::EvaluationCounts counts = noise::ForEachPart(this->Self, samples.GetNumberOfParts(),
       samples.GetNumberOfSamples(), progressStart, progressShare,
       [&](std::size_t begin, std::size_t end)
       { return samples.Evaluate(kernel, begin, end, values); });
@@ -298,11 +351,17 @@ struct vtkSteerableNoiseFilter::Internals
       return; // half an array is none
     }
     this->Samples += samples.GetNumberOfSamples();
-    if (this->Counts.Degenerate > 0)
+    // What is hidden has no direction; with a mask it is stagnant.
+    const std::vector<unsigned char>& hidden = samples.GetHidden().Get(block.Cells);
+    const auto leave = [](std::uint64_t& count, std::uint64_t out)
+    { count -= std::min(count, out); };
+    leave(parameters.MaskThreshold > 0.0 ? counts.Stagnant : counts.Degenerate,
+      hidden.size() - std::count(hidden.begin(), hidden.end(), 0));
+    if (counts.Degenerate > 0)
     {
-      this->Counts.Degenerate -=
-        std::min<std::uint64_t>(this->Counts.Degenerate, CountDegenerateGhosts(block));
+      leave(counts.Degenerate, CountDegenerateGhosts(block, hidden));
     }
+    this->Counts += counts;
 
     vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
     if (this->Self->OutputMetric)

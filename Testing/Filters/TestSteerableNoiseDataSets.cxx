@@ -3,6 +3,7 @@
 /// vtkSteerableNoiseFilter on every type of dataset and composite, and on what is wrong with them.
 #include "FilterTestHelpers.h"
 #include "NoiseCells.h"
+#include "NoiseGhosts.h"
 
 #include "vtkAMRBox.h"
 #include "vtkAppendFilter.h"
@@ -505,6 +506,134 @@ TEST(SteerableNoiseDataSets, SamplesTooFarApartAreNamedWithNumbersAndRemedy)
   const Result fine =
     Apply(MakeImage(20, 20, 1), [](vtkSteerableNoiseFilter* f) { f->SetFeatureSize(4.0); });
   EXPECT_EQ(fine.Warnings, 0) << fine.Text;
+}
+
+/// Values that are left over where data are blanked do not show in what is seen.
+TEST(SteerableNoiseDataSets, HiddenSamplesDoNotChangeVisibleOnes)
+{
+  const auto flag = [](vtkDataSet* dataset, bool cells, unsigned char ghost)
+  {
+    vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    const vtkIdType count = cells ? dataset->GetNumberOfCells() : dataset->GetNumberOfPoints();
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      double bounds[6];
+      double p[3];
+      cells ? dataset->GetCellBounds(i, bounds) : dataset->GetPoint(i, p);
+      ghosts->InsertNextValue((cells ? bounds[0] : p[0]) < 5.0 ? ghost : 0);
+    }
+    (cells ? static_cast<vtkDataSetAttributes*>(dataset->GetCellData()) : dataset->GetPointData())
+      ->AddArray(ghosts);
+  };
+  const std::pair<bool, unsigned char> kinds[] = { { false, vtkDataSetAttributes::HIDDENPOINT },
+    { true, vtkDataSetAttributes::HIDDENCELL }, { true, vtkDataSetAttributes::REFINEDCELL } };
+  for (const auto& kind : kinds)
+  {
+    for (const bool cells : { false, true })
+    {
+      for (const int type : { 0, 1, 2, 3 })
+      {
+        // The flow left of x = 5 is hidden; what it holds must not matter.
+        std::vector<std::vector<float>> noises;
+        vtkIdType counts[2];
+        std::vector<unsigned char> hidden;
+        for (const double left : { 0.0, -9999.0 })
+        {
+          auto image = MakeImage(12, 10, type == 3 ? 1 : 8, 1.0, cells);
+          vtkDataSetAttributes* attributes = cells
+            ? static_cast<vtkDataSetAttributes*>(image->GetCellData())
+            : image->GetPointData();
+          vtkSmartPointer<vtkDataSet> dataset = image;
+          if (type == 1)
+          {
+            dataset = Through<vtkImageDataToPointSet>(image);
+          }
+          else if (type == 2)
+          {
+            dataset = Through<vtkAppendFilter>(image);
+          }
+          attributes = cells ? static_cast<vtkDataSetAttributes*>(dataset->GetCellData())
+                             : dataset->GetPointData();
+          flag(dataset, kind.first, kind.second);
+          const noise::HiddenSamples all(dataset);
+          hidden = all.Get(cells);
+          for (vtkIdType i = 0; i < attributes->GetNumberOfTuples(); ++i)
+          {
+            if (hidden[i])
+            {
+              attributes->GetVectors()->SetTuple3(i, left, left, 0.0);
+            }
+          }
+          vtkNew<vtkSteerableNoiseFilter> filter;
+          filter->SetInputData(dataset);
+          filter->SetFeatureSize(4.0);
+          filter->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE);
+          filter->Update();
+          counts[left < 0.0] = filter->GetNumberOfDegenerateSamples();
+          noises.push_back(Values(filter->GetOutputDataObject(0)));
+        }
+        ASSERT_EQ(noises[0].size(), hidden.size());
+        vtkIdType visible = 0;
+        for (std::size_t i = 0; i < hidden.size(); ++i)
+        {
+          visible += !hidden[i];
+          if (!hidden[i])
+          {
+            ASSERT_EQ(noises[0][i], noises[1][i])
+              << "flag " << int(kind.second) << ", cells " << cells << ", type " << type;
+          }
+        }
+        EXPECT_GT(visible, 0);
+        EXPECT_LT(visible, static_cast<vtkIdType>(hidden.size()));
+        EXPECT_EQ(counts[0], 0);
+        EXPECT_EQ(counts[1], 0);
+      }
+    }
+  }
+}
+
+/// Hidden points do not stretch the bounds; duplicates of another piece count as neighbours.
+TEST(SteerableNoiseDataSets, HiddenPointsDoNotCountForTheAutomaticSize)
+{
+  auto grid = Through<vtkImageDataToPointSet>(MakeImage(500, 400, 1));
+  auto* points = vtkPointSet::SafeDownCast(grid)->GetPoints();
+  const auto size = [&]
+  {
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    filter->SetInputData(grid);
+    filter->Update();
+    return filter->GetResolvedFeatureSize();
+  };
+  const double before = size();
+  points->SetPoint(0, -1e6, 0.0, 0.0);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(grid->GetNumberOfPoints());
+  ghosts->Fill(0);
+  ghosts->SetValue(0, vtkDataSetAttributes::HIDDENPOINT);
+  grid->GetPointData()->AddArray(ghosts);
+  grid->Modified();
+  points->Modified();
+  EXPECT_EQ(size(), before);
+}
+
+TEST(SteerableNoiseDataSets, DuplicatesOfAnotherPieceAreNeighbours)
+{
+  auto image = MakeImage(12, 10, 1);
+  const auto noise = [&] {
+    return Values(Apply(image, [](vtkSteerableNoiseFilter* f) { f->SetFeatureSize(4.0); }).Output);
+  };
+  const std::vector<float> expected = noise();
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  ghosts->SetNumberOfTuples(image->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
+  {
+    ghosts->SetValue(i, i % 12 < 5 ? vtkDataSetAttributes::DUPLICATEPOINT : 0);
+  }
+  image->GetPointData()->AddArray(ghosts);
+  EXPECT_EQ(noise(), expected);
 }
 
 TEST(SteerableNoiseDataSets, NormalsTextureCoordinatesAndColoursAreNeverTaken)

@@ -22,6 +22,7 @@
 #include "vtkPoints.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkSMPTools.h"
+#include "vtkStaticPointLocator.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
 
@@ -488,44 +489,194 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkI
   }
 }
 
-void AddSampleSpacing(
-  vtkDataSet* dataset, const HiddenSamples& hidden, vtkIdType cellsAtMost, double& largest, double& sum, double& count)
+namespace
+{
+using Places = std::vector<Eigen::Vector3d>;
+
+/// Spacing along each axis of samples that fill a cell of this dimension; `whole`: of the cell's sides.
+Eigen::Array3d SpacingOf(const Eigen::Vector3d* places, std::size_t count, int dimension, bool whole)
+{
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    mean += places[i] / static_cast<double>(count);
+  }
+  Eigen::Array3d variance = Eigen::Array3d::Zero();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    variance += (places[i] - mean).array().square() / static_cast<double>(count);
+  }
+  if (count == static_cast<std::size_t>(dimension) + 1)
+  {
+    // Half a square or a sixth of a cube counts as the whole.
+    return (variance * ((dimension + 1.0) * (dimension + 1.0) / dimension)).sqrt();
+  }
+  // p intervals of h on a side: variance h^2 p (p + 2) / 12.
+  const double intervals = std::pow(static_cast<double>(count), 1.0 / dimension) - 1.0;
+  const Eigen::Array3d spacing =
+    (variance * (12.0 / (intervals * (intervals + 2.0)))).sqrt();
+  return whole ? Eigen::Array3d(spacing * intervals) : spacing;
+}
+
+/// Root mean square along each axis of the edges of a polygon, as of a square with such edges.
+Eigen::Array3d SpacingOfEdges(const Places& corners)
+{
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i)
+  {
+    sum += (corners[(i + 1) % corners.size()] - corners[i]).array().square();
+  }
+  return (2.0 * sum / static_cast<double>(corners.size())).sqrt();
+}
+
+/// Distance of a place from the nearest other one along each axis if neighbours are on all sides.
+bool GetNearest(vtkStaticPointLocator* locator, vtkDataSet* dataset, vtkIdType point,
+  vtkIdList* near, Eigen::Array3d& spacing)
+{
+  Eigen::Vector3d place;
+  dataset->GetPoint(point, place.data());
+  if (!place.allFinite())
+  {
+    return false;
+  }
+  locator->FindClosestNPoints(8, place.data(), near);
+  for (const vtkIdType other : *near)
+  {
+    Eigen::Vector3d there;
+    dataset->GetPoint(other, there.data());
+    const double distance = (there - place).norm();
+    if (std::isfinite(distance) && distance > 0.0)
+    {
+      spacing.setConstant(distance);
+      return true;
+    }
+  }
+  return false;
+}
+} // namespace
+
+void SampleSpacing::Add(
+  vtkDataSet* dataset, bool centers, const HiddenSamples& hidden, vtkIdType cellsAtMost)
 {
   if (auto* image = vtkImageData::SafeDownCast(dataset))
   {
     int dims[3];
     image->GetDimensions(dims);
+    const double* direction = image->GetDirectionMatrix()->GetData();
     for (int axis = 0; axis < 3; ++axis)
     {
-      if (dims[axis] > 1)
+      double squares = 0.0;
+      for (int i = 0; i < 3; ++i)
       {
-        largest = std::max(largest, std::abs(image->GetSpacing()[axis]));
+        const double step = direction[3 * axis + i] * image->GetSpacing()[i];
+        squares += dims[i] > 1 ? step * step : 0.0;
+      }
+      // Squares of tiny or huge spacings have no room.
+      const double own = dims[axis] > 1 ? std::abs(image->GetSpacing()[axis]) : 0.0;
+      const bool turned = std::abs(direction[4 * axis]) != 1.0;
+      this->Largest[axis] = std::max(this->Largest[axis], turned ? std::sqrt(squares) : own);
+    }
+    return;
+  }
+  const vtkIdType cells = dataset->GetNumberOfCells();
+  const vtkIdType points = dataset->GetNumberOfPoints();
+  const auto add = [this](const Eigen::Array3d& spacing)
+  {
+    if (spacing.allFinite())
+    {
+      Eigen::Map<Eigen::Array3d>(this->Sum) += spacing;
+      this->Count += 1.0;
+    }
+  };
+  vtkNew<vtkIdList> ids;
+  vtkSmartPointer<vtkStaticPointLocator> locator;
+  const auto addNearest = [&](vtkIdType point)
+  {
+    if (!locator)
+    {
+      locator = vtkSmartPointer<vtkStaticPointLocator>::New();
+      locator->SetDataSet(dataset);
+      locator->BuildLocator();
+    }
+    vtkNew<vtkIdList> near;
+    Eigen::Array3d spacing;
+    if (GetNearest(locator, dataset, point, near, spacing))
+    {
+      add(spacing);
+    }
+  };
+  // Distances of the nearest are looked for at fewer places: each takes a search.
+  constexpr vtkIdType searchesAtMost = 10000;
+  if (cells == 0)
+  {
+    for (vtkIdType point = 0; point < points; point += 1 + points / searchesAtMost)
+    {
+      if (!hidden.HasPoint(point))
+      {
+        addNearest(point);
       }
     }
     return;
   }
-  // A slab's own thickness says nothing about the distance of its samples.
-  const bool slab = GetSlabAxis(dataset) >= 0;
-  const vtkIdType cells = dataset->GetNumberOfCells();
-  const vtkIdType step = 1 + cells / cellsAtMost;
+  const CellDimensions dimensions(dataset);
+  // A slab's own thickness says nothing about the distance of its samples: one side of it does.
+  const int slab = GetSlabAxis(dataset);
+  int dims[3] = { 1, 1, 1 };
+  GetDimensions(dataset, dims);
+  const vtkIdType strides[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };
   vtkUnsignedCharArray* ghosts = dataset->GetCellGhostArray();
+  const vtkIdType step = 1 + cells / cellsAtMost;
+  vtkIdType searches = 0;
+  Places places;
   for (vtkIdType id = 0; id < cells; id += step)
   {
     if (hidden.HasCell(id) || IsGhostCell(ghosts, id))
     {
       continue;
     }
-    double bounds[6];
-    dataset->GetCellBounds(id, bounds);
-    double extent[3] = { bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4] };
-    std::sort(extent, extent + 3);
-    const bool flat = slab || extent[0] <= 1e-6 * extent[2];
-    const double low = flat ? 0.0 : extent[0];
-    const double diagonal = std::sqrt(low * low + extent[1] * extent[1] + extent[2] * extent[2]);
-    if (std::isfinite(diagonal))
+    const int type = dataset->GetCellType(id);
+    const int dimension = slab >= 0 ? 2 : dimensions.Get(type);
+    dataset->GetCellPoints(id, ids);
+    places.clear();
+    for (const vtkIdType point : *ids)
     {
-      sum += diagonal / std::sqrt(flat ? 2.0 : 3.0);
-      count += 1.0;
+      if (slab < 0 || point / strides[slab] % dims[slab] == 0)
+      {
+        places.emplace_back();
+        dataset->GetPoint(point, places.back().data());
+      }
+    }
+    if (dimension == 0)
+    {
+      for (const vtkIdType point : *ids)
+      {
+        searches += 1;
+        if (searches <= searchesAtMost)
+        {
+          addNearest(point);
+        }
+      }
+      continue;
+    }
+    if (places.size() < static_cast<std::size_t>(dimension) + 1)
+    {
+      continue;
+    }
+    const std::size_t part = type == VTK_TRIANGLE_STRIP ? 3 : type == VTK_POLY_LINE ? 2 : 0;
+    if (part > 0 && !centers)
+    {
+      for (std::size_t first = 0; first + part <= places.size(); ++first)
+      {
+        add(SpacingOf(places.data() + first, part, dimension, false));
+      }
+    }
+    else if (type == VTK_POLYGON && places.size() > 4 && !centers)
+    {
+      add(SpacingOfEdges(places));
+    }
+    else
+    {
+      add(SpacingOf(places.data(), places.size(), dimension, centers));
     }
   }
 }

@@ -80,12 +80,24 @@ private:
 };
 
 /**
- * Typical distance of samples: the largest spacing of an image; for other datasets the sum over its
- * cells (ghosts and hidden ones left out; evenly chosen if there are more than `cellsAtMost`) of diagonal / √dimension
- * goes to `sum` and their number to `count`.
+ * How far apart neighbouring samples are along the axes of the world: the largest distance of all images,
+ * and the sum of the distances in cells with their number. They combine by maximum and sum.
  */
-void AddSampleSpacing(
-  vtkDataSet* dataset, const HiddenSamples& hidden, vtkIdType cellsAtMost, double& largest, double& sum, double& count);
+struct SampleSpacing
+{
+  double Largest[3] = { 0.0, 0.0, 0.0 };
+  double Sum[3] = { 0.0, 0.0, 0.0 };
+  double Count = 0.0;
+
+  /**
+   * Adds a dataset with samples at its points or, `centers`, one in each of its cells. What a cell tells is
+   * the spacing of a lattice with the same number of samples and the same variance of their places along
+   * each axis; strips and lines count as their triangles and segments, polygons by their edges, and
+   * vertices by the distance of the nearest other place. Ghosts and hidden cells are left out, and of more
+   * than `cellsAtMost` cells an even choice is looked at.
+   */
+  void Add(vtkDataSet* dataset, bool centers, const HiddenSamples& hidden, vtkIdType cellsAtMost);
+};
 } // namespace noise
 
 #endif

@@ -31,6 +31,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -89,9 +90,7 @@ struct Extremes
 {
   double Bounds[6]; // lower corner, then the negated upper one
   double LongestVector = 0.0;
-  double LargestSpacing = 0.0;
-  double SpacingSum = 0.0;
-  double SpacingCount = 0.0;
+  noise::SampleSpacing Spacing;
 
   Extremes() { std::fill_n(this->Bounds, 6, std::numeric_limits<double>::infinity()); }
 
@@ -131,8 +130,7 @@ struct Extremes
       this->LongestVector =
         std::max(this->LongestVector, GetLongest(block.Array, hidden.Get(block.Cells)));
     }
-    noise::AddSampleSpacing(block.DataSet, hidden, exact ? 1000000 : 10000, this->LargestSpacing,
-      this->SpacingSum, this->SpacingCount);
+    this->Spacing.Add(block.DataSet, block.Cells, hidden, exact ? 1000000 : 10000);
   }
 
   void Reduce(vtkMultiProcessController* controller)
@@ -141,43 +139,94 @@ struct Extremes
     {
       return;
     }
-    double least[8];
+    double least[10];
     std::copy_n(this->Bounds, 6, least);
     least[6] = -this->LongestVector;
-    least[7] = -this->LargestSpacing;
-    double all[8];
-    controller->AllReduce(least, all, 8, vtkCommunicator::MIN_OP);
+    std::transform(this->Spacing.Largest, this->Spacing.Largest + 3, least + 7, std::negate<>());
+    double all[10];
+    controller->AllReduce(least, all, 10, vtkCommunicator::MIN_OP);
     std::copy_n(all, 6, this->Bounds);
     this->LongestVector = -all[6];
-    this->LargestSpacing = -all[7];
-    const double sums[2] = { this->SpacingSum, this->SpacingCount };
-    double total[2];
-    controller->AllReduce(sums, total, 2, vtkCommunicator::SUM_OP);
-    this->SpacingSum = total[0];
-    this->SpacingCount = total[1];
+    std::transform(all + 7, all + 10, this->Spacing.Largest, std::negate<>());
+    double sums[4];
+    std::copy_n(this->Spacing.Sum, 3, sums);
+    sums[3] = this->Spacing.Count;
+    double total[4];
+    controller->AllReduce(sums, total, 4, vtkCommunicator::SUM_OP);
+    std::copy_n(total, 3, this->Spacing.Sum);
+    this->Spacing.Count = total[3];
   }
 
-  double GetDiagonal() const
+  /// Side of the bounds along an axis, 0 if there is none.
+  double GetSide(int axis) const
   {
-    double length[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      length[axis] = -this->Bounds[3 + axis] - this->Bounds[axis];
-      length[axis] = std::isfinite(length[axis]) ? length[axis] : 0.0;
-    }
-    return std::hypot(length[0], length[1], length[2]);
+    const double side = -this->Bounds[3 + axis] - this->Bounds[axis];
+    return std::isfinite(side) ? side : 0.0;
   }
 
-  /// The mean has three digits, so that the order of its sum over ranks does not show.
+  /**
+   * The largest size of which a picture of the whole shows enough: an eighth of the second longest side of
+   * the bounds. The longest may have another unit (metres of depth beside degrees), and one of less than
+   * a ten-thousandth of it is not seen.
+   */
+  double GetLargestSize() const
+  {
+    double sides[3] = { this->GetSide(0), this->GetSide(1), this->GetSide(2) };
+    std::sort(sides, sides + 3, std::greater<>());
+    return 0.125 * (sides[1] > 1e-4 * sides[0] ? sides[1] : sides[0]);
+  }
+
+  /**
+   * The largest of the distances of neighbours along the axes, of those along which 4 fit into the largest
+   * size or that are at most twice the smallest. Means have three digits, so that the order of their sums
+   * over ranks does not show.
+   */
   double GetSampleSpacing() const
   {
-    double mean = this->SpacingCount > 0.0 ? this->SpacingSum / this->SpacingCount : 0.0;
-    if (mean > 0.0)
+    double spacing[3];
+    double smallest = std::numeric_limits<double>::infinity();
+    const double longest = std::max({ this->GetSide(0), this->GetSide(1), this->GetSide(2) });
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const double unit = std::pow(10.0, std::floor(std::log10(mean)) - 2.0);
-      mean = std::round(mean / unit) * unit;
+      double mean = this->Spacing.Count > 0.0 ? this->Spacing.Sum[axis] / this->Spacing.Count : 0.0;
+      if (mean > 0.0)
+      {
+        const double unit = std::pow(10.0, std::floor(std::log10(mean)) - 2.0);
+        mean = std::round(mean / unit) * unit;
+      }
+      spacing[axis] = std::max(mean, this->Spacing.Largest[axis]);
+      if (spacing[axis] > 0.0 && this->GetSide(axis) > 1e-4 * longest)
+      {
+        smallest = std::min(smallest, spacing[axis]);
+      }
     }
-    return std::max(mean, this->LargestSpacing);
+    const double most = std::max(0.25 * this->GetLargestSize(), 2.0 * smallest);
+    double largest = 0.0;
+    for (const double here : spacing)
+    {
+      largest = here <= most ? std::max(largest, here) : largest;
+    }
+    return largest;
+  }
+
+  /// The smallest FeatureSize that the samples carry; 0 if they are nowhere.
+  double GetSmallestSize() const { return Snap(4.0 * this->GetSampleSpacing()); }
+
+  double GetAutomaticSize() const
+  {
+    const double diagonal = std::hypot(this->GetSide(0), this->GetSide(1), this->GetSide(2));
+    return std::max(
+      Snap(std::min(0.01 * diagonal, this->GetLargestSize())), this->GetSmallestSize());
+  }
+
+private:
+  /**
+   * The nearest power of the fourth root of 2: sizes that differ a little, between the steps of a series or
+   * the places of a slice, become the same, and streaks stay where they are.
+   */
+  static double Snap(double size)
+  {
+    return size > 0.0 ? std::exp2(std::round(4.0 * std::log2(size)) / 4.0) : 0.0;
   }
 };
 
@@ -395,13 +444,14 @@ struct vtkSteerableNoiseFilter::Internals
               << this->BlocksWithout
               << " block(s) have no usable array and were passed on without noise. " << this->Why;
     }
-    const double spacing = extremes.GetSampleSpacing();
+    const double smallest = extremes.GetSmallestSize();
     const double finest =
       parameters.FeatureSize / std::pow(parameters.Lacunarity, parameters.Octaves - 1);
-    if (spacing > 0.0 && finest < 3.999 * spacing)
+    if (finest < 0.999 * smallest)
     {
-      message << "\nThe samples are " << spacing << " apart, too far for noise of FeatureSize "
-              << finest << ". Set FeatureSize to at least " << 4.0 * spacing
+      message << "\nThe samples are " << extremes.GetSampleSpacing()
+              << " apart, too far for noise of FeatureSize " << finest
+              << ". Set FeatureSize to at least " << smallest
               << ", or refine the data (Magnification on images, Resample to Image, Subdivide).";
     }
     if (!message.str().empty())
@@ -611,8 +661,7 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   if (this->FeatureSize <= 0.0)
   {
-    const double automatic =
-      std::max(0.01 * extremes.GetDiagonal(), 4.0 * extremes.GetSampleSpacing());
+    const double automatic = extremes.GetAutomaticSize();
     parameters.FeatureSize = automatic > 0.0 ? automatic : 1.0;
   }
   if (needsMagnitude)

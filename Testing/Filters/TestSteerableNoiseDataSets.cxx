@@ -490,7 +490,8 @@ TEST(SteerableNoiseDataSets, OneFeatureSizeForAllBlocks)
   vtkNew<vtkSteerableNoiseFilter> filter;
   filter->SetInputDataObject(collection);
   filter->Update();
-  EXPECT_NEAR(filter->GetResolvedFeatureSize(), 0.01 * std::hypot(559, 49), 1e-9);
+  // 5.61, and the next power of the fourth root of 2.
+  EXPECT_NEAR(filter->GetResolvedFeatureSize(), std::exp2(2.5), 1e-9);
   auto* output = vtkPartitionedDataSetCollection::SafeDownCast(filter->GetOutputDataObject(0));
   ASSERT_NE(output, nullptr);
   EXPECT_EQ(Values(output->GetPartition(0, 1)).size(), 3000u);
@@ -634,6 +635,191 @@ TEST(SteerableNoiseDataSets, DuplicatesOfAnotherPieceAreNeighbours)
   }
   image->GetPointData()->AddArray(ghosts);
   EXPECT_EQ(noise(), expected);
+}
+
+namespace
+{
+double AutomaticSize(vtkDataObject* input)
+{
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputDataObject(input);
+  filter->Update();
+  EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
+  return filter->GetResolvedFeatureSize();
+}
+
+/// 65 x 65 points, 1/64 apart, in cells of so many intervals on a side, or rows of them in one cell.
+vtkSmartPointer<vtkUnstructuredGrid> Sheet(int type, int intervals)
+{
+  constexpr vtkIdType n = 65;
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  for (vtkIdType i = 0; i < n * n; ++i)
+  {
+    points->InsertNextPoint(i % n / 64.0, i / n / 64.0, 0.0);
+  }
+  grid->SetPoints(points);
+  std::vector<vtkIdType> ids;
+  for (vtkIdType y = 0; y + 1 < n; y += intervals)
+  {
+    ids.clear();
+    for (vtkIdType x = 0; x < n; ++x)
+    {
+      const vtkIdType a = y * n + x;
+      if (type == VTK_TRIANGLE_STRIP)
+      {
+        ids.insert(ids.end(), { a + n, a });
+      }
+      else if (type == VTK_POLY_LINE)
+      {
+        ids.push_back(a);
+      }
+      else if (type == VTK_POLY_VERTEX)
+      {
+        grid->InsertNextCell(VTK_VERTEX, 1, &a);
+      }
+      else if (x % intervals == 0 && x + 1 < n)
+      {
+        // Corners, then edges, then the inside, as Lagrange cells have them.
+        const vtkIdType o = intervals;
+        const auto at = [&](vtkIdType i, vtkIdType j) { return a + j * n + i; };
+        std::vector<vtkIdType> cell = { at(0, 0), at(o, 0), at(o, o), at(0, o) };
+        for (vtkIdType i = 1; i < o; ++i)
+        {
+          cell.push_back(at(i, 0));
+        }
+        for (vtkIdType i = 1; i < o; ++i)
+        {
+          cell.push_back(at(o, i));
+        }
+        for (vtkIdType i = 1; i < o; ++i)
+        {
+          cell.push_back(at(i, o));
+        }
+        for (vtkIdType i = 1; i < o; ++i)
+        {
+          cell.push_back(at(0, i));
+        }
+        for (vtkIdType i = 0; i < (o - 1) * (o - 1); ++i)
+        {
+          cell.push_back(at(1 + i % (o - 1), 1 + i / (o - 1)));
+        }
+        grid->InsertNextCell(type, static_cast<vtkIdType>(cell.size()), cell.data());
+      }
+    }
+    if (!ids.empty())
+    {
+      grid->InsertNextCell(type, static_cast<vtkIdType>(ids.size()), ids.data());
+    }
+  }
+  AddFlow(grid);
+  return grid;
+}
+} // namespace
+
+/// The same points, however long the cells are that they are in.
+TEST(SteerableNoiseDataSets, SpacingIsTheDistanceOfNeighboursAndNotTheSizeOfCells)
+{
+  const double expected = 4.0 / 64.0;
+  EXPECT_NEAR(AutomaticSize(Sheet(VTK_QUAD, 1)), expected, 1e-6);
+  for (const int order : { 2, 4, 8, 16 })
+  {
+    EXPECT_NEAR(AutomaticSize(Sheet(VTK_LAGRANGE_QUADRILATERAL, order)), expected, 1e-6) << order;
+  }
+  EXPECT_NEAR(AutomaticSize(Sheet(VTK_TRIANGLE_STRIP, 1)), expected, 1e-6);
+  EXPECT_NEAR(AutomaticSize(Sheet(VTK_POLY_LINE, 1)), expected, 1e-6);
+  EXPECT_NEAR(AutomaticSize(Sheet(VTK_POLY_VERTEX, 1)), expected, 1e-6);
+  auto loose = Sheet(VTK_QUAD, 1);
+  loose->SetCells(VTK_QUAD, vtkSmartPointer<vtkCellArray>::New());
+  EXPECT_NEAR(AutomaticSize(loose), expected, 1e-6) << "points without cells";
+
+  // A polygon of 64 corners on a circle of radius 1: they are 0.098 apart.
+  std::vector<double> corners;
+  for (int i = 0; i < 64; ++i)
+  {
+    const double angle = 2.0 * vtkMath::Pi() * i / 64;
+    corners.insert(corners.end(), { std::cos(angle), std::sin(angle), 0.0 });
+  }
+  EXPECT_NEAR(AutomaticSize(Cells(VTK_POLYGON, corners)), 0.4, 0.05);
+
+  // Vertices too far apart are named, as any samples are.
+  const Result far =
+    Apply(Sheet(VTK_POLY_VERTEX, 1), [](vtkSteerableNoiseFilter* f) { f->SetFeatureSize(0.01); });
+  EXPECT_EQ(far.Warnings, 1);
+  EXPECT_NE(far.Text.find("0.0156 apart"), std::string::npos) << far.Text;
+
+  // Samples in the cells are as far apart as the cells.
+  auto cells = Sheet(VTK_LAGRANGE_QUADRILATERAL, 4);
+  cells->GetPointData()->Initialize();
+  AddFlow(cells, true);
+  EXPECT_NEAR(AutomaticSize(cells), 0.25, 1e-6);
+}
+
+/// Degrees beside metres, and thin domains: the size is a share of what a picture shows.
+TEST(SteerableNoiseDataSets, AutomaticSizeFitsIntoThePicture)
+{
+  for (const double depth : { 0.0, 0.01, 10.0, 2000.0, 1e5 })
+  {
+    vtkNew<vtkRectilinearGrid> ocean;
+    const int layers = depth > 0.0 ? 4 : 1;
+    ocean->SetDimensions(181, 91, layers);
+    vtkNew<vtkDoubleArray> x[3];
+    for (int i = 0; i <= 180; ++i)
+    {
+      x[0]->InsertNextValue(2.0 * i);
+    }
+    for (int i = 0; i <= 90; ++i)
+    {
+      x[1]->InsertNextValue(2.0 * i - 90.0);
+    }
+    for (int i = 0; i < layers; ++i)
+    {
+      x[2]->InsertNextValue(-depth * i / std::max(layers - 1, 1));
+    }
+    ocean->SetXCoordinates(x[0]);
+    ocean->SetYCoordinates(x[1]);
+    ocean->SetZCoordinates(x[2]);
+    AddFlow(ocean);
+    const double size = AutomaticSize(ocean);
+    EXPECT_GE(size, 7.9) << "4 samples carry it; depth " << depth;
+    EXPECT_LE(size, 50.0) << "depth " << depth;
+    // Where it is too small the advice is what the automatic size would be, or less.
+    const Result fine =
+      Apply(ocean, [](vtkSteerableNoiseFilter* f) { f->SetFeatureSize(4.0); });
+    EXPECT_EQ(fine.Warnings, 1) << depth;
+    const std::string words = "at least ";
+    const std::size_t at = fine.Text.find(words);
+    ASSERT_NE(at, std::string::npos) << fine.Text;
+    EXPECT_LE(std::stod(fine.Text.substr(at + words.size())), 1.001 * size) << fine.Text;
+  }
+}
+
+/// Sizes stay the same while data change a little.
+TEST(SteerableNoiseDataSets, AutomaticSizesAreOnALadder)
+{
+  const auto size = [](double width)
+  {
+    auto image = MakeImage(400, 300, 1);
+    image->SetSpacing(width / 399.0, width / 399.0, 1.0);
+    return AutomaticSize(image);
+  };
+  EXPECT_EQ(size(3.395), size(3.41)) << "0.0424 and 0.0426 of a hundredth of the diagonal";
+  double before = size(1.0);
+  int steps = 0;
+  for (int i = 1; i <= 60; ++i)
+  {
+    const double here = size(1.0 + 0.05 * i); // up to 4
+    if (here != before)
+    {
+      EXPECT_NEAR(here / before, std::pow(2.0, 0.25), 1e-12);
+      ++steps;
+    }
+    before = here;
+    EXPECT_NEAR(std::log2(here / (0.01 * std::hypot(1.0, 299.0 / 399.0) * (1.0 + 0.05 * i))), 0.0,
+      0.1251);
+  }
+  EXPECT_EQ(steps, 8);
 }
 
 TEST(SteerableNoiseDataSets, NormalsTextureCoordinatesAndColoursAreNeverTaken)

@@ -243,6 +243,27 @@ bool IsUsable(vtkDataArray* array)
       noise::IsTensor(array->GetNumberOfComponents()));
 }
 
+/// Data without time, or of one time, which is `only`.
+bool IsSteady(vtkInformation* info, double& only)
+{
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  if (info->Has(SDDP::TIME_STEPS()) && info->Length(SDDP::TIME_STEPS()) > 0)
+  {
+    only = info->Get(SDDP::TIME_STEPS(), 0);
+    return info->Length(SDDP::TIME_STEPS()) == 1;
+  }
+  if (info->Has(SDDP::TIME_RANGE()))
+  {
+    only = info->Get(SDDP::TIME_RANGE(), 0);
+    return only == info->Get(SDDP::TIME_RANGE(), 1);
+  }
+  return true;
+}
+
+constexpr const char* HyperTreeGridMessage =
+  "A HyperTreeGrid has no points or cells of its own. Apply Hyper Tree Grid To Unstructured Grid "
+  "(vtkHyperTreeGridToUnstructuredGrid) first, or Resample To Image.";
+
 /// Degenerate samples are counted by the kernel with the ghosts; these are the duplicates among them.
 vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned char>& hidden)
 {
@@ -494,6 +515,8 @@ int vtkSteerableNoiseFilter::FillInputPortInformation(int, vtkInformation* info)
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  // Taken in order to be refused with a sentence.
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkHyperTreeGrid");
   return 1;
 }
 
@@ -504,10 +527,11 @@ int vtkSteerableNoiseFilter::RequestInformation(
   vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
   using SDDP = vtkStreamingDemandDrivenPipeline;
-  if (this->TimePeriod > 0.0 && !inInfo->Has(SDDP::TIME_STEPS()) &&
-    !inInfo->Has(SDDP::TIME_RANGE()))
+  double only = 0.0;
+  if (this->TimePeriod > 0.0 && IsSteady(inInfo, only))
   {
-    const double range[2] = { 0.0, this->TimePeriod };
+    const double range[2] = { only, only + this->TimePeriod };
+    outInfo->Remove(SDDP::TIME_STEPS());
     outInfo->Set(SDDP::TIME_RANGE(), range, 2);
   }
   else if (!inInfo->Has(SDDP::TIME_RANGE()))
@@ -528,6 +552,11 @@ int vtkSteerableNoiseFilter::RequestUpdateExtent(
   vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
   using SDDP = vtkStreamingDemandDrivenPipeline;
+  double only = 0.0;
+  if (this->TimePeriod > 0.0 && inInfo->Has(SDDP::TIME_STEPS()) && IsSteady(inInfo, only))
+  {
+    inInfo->Set(SDDP::UPDATE_TIME_STEP(), only); // there is no other: nothing is read again
+  }
   const bool magnify = this->Magnification > 1 && vtkImageData::GetData(inInfo);
   // Curvature looks at the next samples, and so does interpolation.
   const int border = (this->FollowCurvature ? 1 : 0) + (magnify ? 1 : 0);
@@ -573,6 +602,12 @@ int vtkSteerableNoiseFilter::RequestData(
     return 0;
   }
 
+  if (input->IsA("vtkHyperTreeGrid"))
+  {
+    vtkErrorMacro(<< HyperTreeGridMessage);
+    return 0;
+  }
+
   Internals internals;
   internals.Self = this;
   std::vector<Block> blocks;
@@ -613,6 +648,11 @@ int vtkSteerableNoiseFilter::RequestData(
       if (auto* dataset = vtkDataSet::SafeDownCast(copy))
       {
         addBlock(dataset, false);
+      }
+      else if (copy->IsA("vtkHyperTreeGrid"))
+      {
+        ++internals.BlocksWithout;
+        internals.Why = HyperTreeGridMessage;
       }
     }
     failed = blocks.empty() && internals.BlocksWithout > 0 && !this->Controller;

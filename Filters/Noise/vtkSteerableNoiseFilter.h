@@ -202,7 +202,8 @@ public:
   ///@{
   /**
    * Pipeline time of one loop; time / TimePeriod is added to Phase. 0, the default: time does not
-   * matter. With it, an input without time steps becomes animated over the range 0 to TimePeriod.
+   * matter. With it, an input without time steps becomes animated over the range 0 to TimePeriod, and one
+   * with a single time over one TimePeriod from there.
    */
   vtkSetClampMacro(TimePeriod, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimePeriod, double);

@@ -6,9 +6,11 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkArrayCalculator.h"
 #include "vtkCallbackCommand.h"
+#include "vtkHyperTreeGrid.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkMatrix3x3.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkSMPTools.h"
 #include "vtkSOADataArrayTemplate.h"
@@ -502,6 +504,73 @@ TEST(SteerableNoiseFilter, TimeMovesASteadyFlow)
   const std::vector<float> phase =
     Noise(image, 5.0, [](vtkSteerableNoiseFilter* f) { f->SetPhase(0.25); });
   EXPECT_EQ(phase, quarter);
+}
+
+TEST(SteerableNoiseFilter, ASingleTimeIsSteady)
+{
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(MakeImage(40, 30, 1));
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputConnection(producer->GetOutputPort());
+  filter->SetFeatureSize(5.0);
+  filter->SetTimePeriod(2.0);
+  const auto offer = [&](const std::vector<double>& steps, const std::vector<double>& range)
+  {
+    producer->UpdateInformation();
+    vtkInformation* info = producer->GetOutputInformation(0);
+    info->Remove(SDDP::TIME_STEPS());
+    info->Remove(SDDP::TIME_RANGE());
+    if (!steps.empty())
+    {
+      info->Set(SDDP::TIME_STEPS(), steps.data(), static_cast<int>(steps.size()));
+    }
+    if (!range.empty())
+    {
+      info->Set(SDDP::TIME_RANGE(), range.data(), 2);
+    }
+    filter->Modified();
+    filter->UpdateInformation();
+    vtkInformation* out = filter->GetOutputInformation(0);
+    return std::vector<double>{ out->Get(SDDP::TIME_RANGE())[0], out->Get(SDDP::TIME_RANGE())[1] };
+  };
+  using Range = std::vector<double>;
+  EXPECT_EQ(offer({ 313.0 }, { 313.0, 313.0 }), Range({ 313.0, 315.0 }));
+  EXPECT_FALSE(filter->GetOutputInformation(0)->Has(SDDP::TIME_STEPS()));
+  filter->UpdateTimeStep(313.0);
+  const std::vector<float> start = Values(filter->GetOutputDataObject(0));
+  filter->UpdateTimeStep(313.5);
+  EXPECT_NE(Values(filter->GetOutputDataObject(0)), start);
+  EXPECT_EQ(offer({ 313.0 }, {}), Range({ 313.0, 315.0 }));
+  EXPECT_EQ(offer({}, { 7.0, 7.0 }), Range({ 7.0, 9.0 }));
+  EXPECT_EQ(offer({}, {}), Range({ 0.0, 2.0 }));
+  // Data with times of their own keep them.
+  EXPECT_EQ(offer({ 1.0, 4.0 }, { 1.0, 4.0 }), Range({ 1.0, 4.0 }));
+  EXPECT_EQ(filter->GetOutputInformation(0)->Length(SDDP::TIME_STEPS()), 2);
+}
+
+TEST(SteerableNoiseFilter, HyperTreeGridsAreRefusedWithARemedy)
+{
+  vtkNew<vtkHyperTreeGrid> grid;
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputDataObject(grid);
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("Hyper Tree Grid To Unstructured Grid"), std::string::npos)
+    << messages->Text;
+  // In a composite the others get their noise.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, grid);
+  blocks->SetBlock(1, MakeImage(40, 30, 1));
+  vtkNew<vtkSteerableNoiseFilter> second;
+  messages = Listen(second);
+  second->SetInputDataObject(blocks);
+  second->Update();
+  EXPECT_EQ(messages->Errors, 0);
+  EXPECT_NE(messages->Text.find("HyperTreeGrid"), std::string::npos) << messages->Text;
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(second->GetOutputDataObject(0));
+  EXPECT_EQ(Values(output->GetBlock(1)).size(), 1200u);
 }
 
 TEST(SteerableNoiseFilter, PhaseWrapsAndAnimateClosesTheLoop)

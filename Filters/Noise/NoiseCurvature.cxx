@@ -3,6 +3,7 @@
 #include "NoiseCurvature.h"
 
 #include "CellSums.h"
+#include "NoiseCopies.h"
 #include "NoiseThreads.h"
 
 #include "vtkSMPTools.h"
@@ -152,6 +153,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
   double cellSize)
 {
   const CellDimensions dimensions(dataset);
+  const CoincidentPoints copies(dataset, hidden); // before the arrays: it takes memory for a while
   auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfPoints());
   // The noise takes bends up to 1 / cellSize: room for 127 cells of such, and finer than it sees.
   PointSums sums(dataset, curvature, cellSize * (1 << 24));
@@ -185,14 +187,16 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
       }
     });
   sums.Finish();
+  copies.Share(curvature, cellSize * (1 << 24), false, 0.0);
   return curvature;
 }
 
 /// Of cells, whose directions go to their points first.
 vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
-  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors)
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden)
 {
   const CellDimensions dimensions(dataset);
+  const CoincidentPoints copies(dataset, hidden);
   auto points = NewOutputArray("Directions", 3, dataset->GetNumberOfPoints());
   PointSums sums(dataset, points, DirectionSteps);
   sums.AddCells(true,
@@ -206,6 +210,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
       }
     });
   sums.Finish();
+  copies.Share(points, DirectionSteps, true, 0.0);
   auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfCells());
   vtkSMPTools::For(0, dataset->GetNumberOfCells(), 1024,
     [&](vtkIdType begin, vtkIdType end)
@@ -237,7 +242,7 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells,
   const HiddenSamples& hidden, double cellSize)
 {
-  return cells ? CurvatureOfCells(dataset, vectors)
+  return cells ? CurvatureOfCells(dataset, vectors, hidden)
                : CurvatureOfPoints(dataset, vectors, hidden, cellSize);
 }
 

@@ -822,6 +822,105 @@ TEST(SteerableNoiseDataSets, AutomaticSizesAreOnALadder)
   EXPECT_EQ(steps, 8);
 }
 
+namespace
+{
+/// The same cells with points of their own; `origin`: the point that each was.
+vtkSmartPointer<vtkUnstructuredGrid> Split(vtkDataSet* dataset, std::vector<vtkIdType>& origin)
+{
+  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  grid->SetPoints(points);
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < dataset->GetNumberOfCells(); ++cell)
+  {
+    dataset->GetCellPoints(cell, ids);
+    for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+    {
+      origin.push_back(ids->GetId(i));
+      ids->SetId(i, points->InsertNextPoint(dataset->GetPoint(ids->GetId(i))));
+    }
+    grid->InsertNextCell(dataset->GetCellType(cell), ids);
+  }
+  return grid;
+}
+} // namespace
+
+/// Discontinuous Galerkin exports, STL and glTF store points once for each cell.
+TEST(SteerableNoiseDataSets, PointsOfEachCellAreOnePoint)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(30);
+  sphere->SetPhiResolution(20);
+  sphere->SetRadius(5.0);
+  sphere->Update();
+  vtkNew<vtkPolyData> surface;
+  surface->SetPoints(sphere->GetOutput()->GetPoints());
+  surface->SetPolys(sphere->GetOutput()->GetPolys());
+  const vtkSmartPointer<vtkDataSet> whole[] = { vtkSmartPointer<vtkDataSet>(surface.Get()),
+    Through<vtkDataSetTriangleFilter>(Box(false)), Through<vtkAppendFilter>(Box(false)) };
+  for (const auto& dataset : whole)
+  {
+    for (const bool cells : { false, true })
+    {
+      dataset->GetPointData()->Initialize();
+      dataset->GetCellData()->Initialize();
+      AddFlow(dataset, cells);
+      std::vector<vtkIdType> origin;
+      auto split = Split(dataset, origin);
+      AddFlow(split, cells);
+      const auto configure = [](vtkSteerableNoiseFilter* f) { f->SetFeatureSize(2.0); };
+      const std::vector<float> expected = Values(Apply(dataset, configure).Output);
+      const std::vector<float> noise = Values(Apply(split, configure).Output);
+      ASSERT_FALSE(noise.empty());
+      for (std::size_t i = 0; i < noise.size(); ++i)
+      {
+        ASSERT_NEAR(noise[i], expected[cells ? i : origin[i]], 2e-3)
+          << dataset->GetClassName() << ", cells " << cells;
+      }
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, ACreaseKeepsItsNormals)
+{
+  // The faces of a cube, and each of them alone.
+  vtkNew<vtkUnstructuredGrid> cube;
+  vtkNew<vtkPoints> points;
+  cube->SetPoints(points);
+  const auto configure = [](vtkSteerableNoiseFilter* f)
+  {
+    f->SetFeatureSize(1.0);
+    f->FollowCurvatureOff();
+  };
+  std::vector<float> expected;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    for (const double side : { 0.0, 2.0 })
+    {
+      std::vector<double> corners;
+      for (const auto& corner : { std::pair(0.0, 0.0), { 2.0, 0.0 }, { 2.0, 2.0 }, { 0.0, 2.0 } })
+      {
+        double p[3];
+        p[axis] = side;
+        p[(axis + 1) % 3] = corner.first;
+        p[(axis + 2) % 3] = corner.second;
+        corners.insert(corners.end(), p, p + 3);
+      }
+      std::vector<vtkIdType> ids;
+      for (std::size_t i = 0; i < 4; ++i)
+      {
+        ids.push_back(points->InsertNextPoint(corners.data() + 3 * i));
+      }
+      cube->InsertNextCell(VTK_QUAD, 4, ids.data());
+      const std::vector<float> face = Values(Apply(Cells(VTK_QUAD, corners), configure).Output);
+      expected.insert(expected.end(), face.begin(), face.end());
+    }
+  }
+  AddFlow(cube);
+  EXPECT_LT(LargestDifference(Values(Apply(cube, configure).Output), expected), 1e-5);
+}
+
 TEST(SteerableNoiseDataSets, NormalsTextureCoordinatesAndColoursAreNeverTaken)
 {
   vtkNew<vtkSphereSource> sphere; // has Normals and nothing else

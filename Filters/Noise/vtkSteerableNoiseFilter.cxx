@@ -664,7 +664,16 @@ int vtkSteerableNoiseFilter::RequestData(
     hasWhole = image && outInfo->Has(SDDP::WHOLE_EXTENT());
     if (image && this->Magnification > 1)
     {
-      noise::Magnify(image, vtkImageData::SafeDownCast(output), outInfo, this->Magnification);
+      try
+      {
+        noise::Magnify(image, vtkImageData::SafeDownCast(output), outInfo, this->Magnification);
+      }
+      catch (const std::exception& error)
+      {
+        output->Initialize();
+        vtkErrorMacro(<< error.what());
+        return 0;
+      }
     }
     else
     {

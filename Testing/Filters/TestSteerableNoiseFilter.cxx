@@ -650,6 +650,68 @@ TEST(SteerableNoiseFilter, MagnificationSamplesTheFieldFiner)
   }
 }
 
+TEST(SteerableNoiseFilter, MagnificationKeepsWhatTheInputHolds)
+{
+  auto image = MakeImage(9, 9, 1);
+  auto* flow = image->GetPointData()->GetVectors();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  flow->SetTuple3(40, nan, nan, nan);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  vtkNew<vtkIntArray> labels;
+  labels->SetName("label");
+  for (int i = 0; i < 81; ++i)
+  {
+    ghosts->InsertNextValue(i < 27 ? vtkDataSetAttributes::HIDDENPOINT
+        : i >= 72                  ? vtkDataSetAttributes::DUPLICATEPOINT
+                                   : 0);
+    labels->InsertNextValue(1000 * i);
+  }
+  image->GetPointData()->AddArray(ghosts);
+  image->GetPointData()->AddArray(labels);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(image);
+  filter->SetFeatureSize(4.0);
+  filter->SetMagnification(2);
+  filter->Update();
+  auto* output = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* fine = output->GetPointData()->GetVectors();
+  auto* fineGhosts = output->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName());
+  auto* fineLabels = output->GetPointData()->GetArray("label");
+  int missing = 0;
+  for (int y = 0; y < 17; ++y)
+  {
+    for (int x = 0; x < 17; ++x)
+    {
+      const int at = 17 * y + x;
+      missing += std::isnan(fine->GetComponent(at, 0));
+      if (x % 2 == 0 && y % 2 == 0 && at != 17 * 8 + 8)
+      {
+        ASSERT_EQ(fine->GetComponent(at, 1), flow->GetComponent(9 * (y / 2) + x / 2, 1));
+      }
+      EXPECT_EQ(int(fineLabels->GetComponent(at, 0)) % 1000, 0) << "a label is one of the input's";
+      const int ghost = y < 6 ? vtkDataSetAttributes::HIDDENPOINT
+        : y == 16             ? vtkDataSetAttributes::DUPLICATEPOINT
+                              : 0;
+      EXPECT_EQ(fineGhosts->GetComponent(at, 0), ghost) << "row " << y;
+    }
+  }
+  EXPECT_EQ(missing, 9) << "the sample and those between it and its neighbours";
+}
+
+TEST(SteerableNoiseFilter, MagnificationBeyondMemoryIsRefusedBefore)
+{
+  auto image = MakeImage(100, 100, 100);
+  image->SetDimensions(30000, 30000, 1000); // never filled
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(image);
+  filter->SetMagnification(16);
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1) << messages->Text;
+  EXPECT_NE(messages->Text.find("Lower Magnification"), std::string::npos) << messages->Text;
+}
+
 TEST(SteerableNoiseFilter, OutputMetricIsTheMetric)
 {
   auto image = MakeImage(8, 7, 6);

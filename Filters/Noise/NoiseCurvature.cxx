@@ -257,6 +257,16 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
   const auto axes = static_cast<int>(
     std::count_if(dimensions, dimensions + 3, [](int samples) { return samples > 1; }));
   auto curvature = NewOutputArray("Curvature", 3, count);
+  // An O-grid is closed where its first and last layer are at the same places, as doubles turn out.
+  const auto meet = [&](vtkIdType first, vtkIdType last)
+  {
+    double scratch[6];
+    const Vector3d a = Eigen::Map<const Vector3d>(
+      positions.Read(static_cast<std::size_t>(first), 1, scratch));
+    const Vector3d b = Eigen::Map<const Vector3d>(
+      positions.Read(static_cast<std::size_t>(last), 1, scratch + 3));
+    return (a - b).norm() <= 1e-6 * std::min(a.norm(), b.norm());
+  };
   vtkSMPTools::For(0, count, 1024,
     [&](vtkIdType begin, vtkIdType end)
     {
@@ -293,7 +303,15 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
           const vtkIdType before = index > 0 && isThere(i - strides[axis]) ? i - strides[axis] : i;
           const vtkIdType after =
             index + 1 < dimensions[axis] && isThere(i + strides[axis]) ? i + strides[axis] : i;
-          if (before < after)
+          const vtkIdType first = i - index * strides[axis];
+          const vtkIdType last = first + (dimensions[axis] - 1) * strides[axis];
+          const bool ends = index == 0 || index + 1 == dimensions[axis];
+          if (ends && dimensions[axis] > 3 && isThere(first) && isThere(last) &&
+            isThere(first + strides[axis]) && isThere(last - strides[axis]) && meet(first, last))
+          {
+            getDifferences(last - strides[axis], first + strides[axis], fit);
+          }
+          else if (before < after)
           {
             getDifferences(before, after, fit);
           }

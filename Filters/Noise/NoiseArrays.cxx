@@ -86,9 +86,10 @@ void ToFloats(const double* values, int count, float* out)
 class VectorReader : public steerable::TupleReader<float>
 {
 public:
-  VectorReader(vtkDataArray* array, const Axes& axes, bool inPlane)
+  VectorReader(vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
     : Array(array)
     , InAxes(axes)
+    , TwoAxes(inPlane ? WorldPlane : plane)
     , Rotated(axes != WorldAxes && !(inPlane && array->GetNumberOfComponents() == 2))
   {
   }
@@ -100,6 +101,12 @@ public:
       [&](std::size_t i, const double* tuple)
       {
         double vector[3] = { tuple[0], tuple[1], components > 2 ? tuple[2] : 0.0 };
+        if (components == 2 && this->TwoAxes != WorldPlane)
+        {
+          vector[0] = vector[1] = 0.0;
+          vector[this->TwoAxes[0]] = tuple[0];
+          vector[this->TwoAxes[1]] = tuple[1];
+        }
         if (this->Rotated)
         {
           const double world[3] = { vector[0], vector[1], vector[2] };
@@ -121,15 +128,17 @@ public:
 private:
   vtkDataArray* Array;
   Axes InAxes;
+  Plane TwoAxes;
   bool Rotated;
 };
 
 class TensorReader : public steerable::TupleReader<float>
 {
 public:
-  TensorReader(vtkDataArray* array, const Axes& axes, bool inPlane)
+  TensorReader(vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
     : Array(array)
     , InAxes(axes)
+    , TwoAxes(inPlane ? WorldPlane : plane)
     , Rotated(axes != WorldAxes && !(inPlane && array->GetNumberOfComponents() == 4))
   {
   }
@@ -143,9 +152,11 @@ public:
         double full[3][3] = {};
         if (components == 4)
         {
-          full[0][0] = t[0];
-          full[0][1] = full[1][0] = 0.5 * (t[1] + t[2]);
-          full[1][1] = t[3];
+          const int a = this->TwoAxes[0];
+          const int b = this->TwoAxes[1];
+          full[a][a] = t[0];
+          full[a][b] = full[b][a] = 0.5 * (t[1] + t[2]);
+          full[b][b] = t[3];
         }
         else if (components == 6)
         {
@@ -193,6 +204,7 @@ public:
 private:
   vtkDataArray* Array;
   Axes InAxes;
+  Plane TwoAxes;
   bool Rotated;
 };
 
@@ -271,20 +283,20 @@ private:
 } // namespace
 
 std::unique_ptr<steerable::TupleReader<float>> MakeVectorReader(
-  vtkDataArray* array, const Axes& axes, bool inPlane)
+  vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
 {
   auto* floats = vtkFloatArray::FastDownCast(array);
   if (floats && floats->GetNumberOfComponents() == 3 && axes == WorldAxes)
   {
     return std::make_unique<steerable::ContiguousReader<float, 3>>(floats->GetPointer(0));
   }
-  return std::make_unique<VectorReader>(array, axes, inPlane);
+  return std::make_unique<VectorReader>(array, axes, inPlane, plane);
 }
 
 std::unique_ptr<steerable::TupleReader<float>> MakeTensorReader(
-  vtkDataArray* array, const Axes& axes, bool inPlane)
+  vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
 {
-  return std::make_unique<TensorReader>(array, axes, inPlane);
+  return std::make_unique<TensorReader>(array, axes, inPlane, plane);
 }
 
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray* array)

@@ -36,16 +36,19 @@ inline bool IsTensor(int components)
   return components == 4 || components == 6 || components == 9;
 }
 
+/// World axes that vectors of two components (tensors of four) lie along, outside of images.
+using Plane = std::array<int, 2>;
+constexpr Plane WorldPlane = { 0, 1 };
+
 /**
- * Vectors along the first two or all three of `axes`. Two components are those of the first two world
- * axes, or of the plane itself if `inPlane`.
+ * Vectors along the first two or all three of `axes`. Two components are those of the axes of `plane`, or of the plane itself if `inPlane`.
  */
 std::unique_ptr<steerable::TupleReader<float>> MakeVectorReader(
-  vtkDataArray* array, const Axes& axes, bool inPlane);
+  vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane = WorldPlane);
 
 /// Symmetric part of tensors as XX YY ZZ XY YZ XZ along `axes`. Four components: XX XY YX YY.
 std::unique_ptr<steerable::TupleReader<float>> MakeTensorReader(
-  vtkDataArray* array, const Axes& axes, bool inPlane);
+  vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane = WorldPlane);
 
 /// Coordinates of 3-component arrays.
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray* array);

@@ -125,7 +125,8 @@ int GetSlabAxis(vtkDataSet* dataset)
 } // namespace
 
 Samples::Samples(
-  vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent, int magnification)
+  vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent, int magnification,
+  const Plane& plane)
   : DataSet(dataset)
   , Array(array)
   , Cells(cells)
@@ -135,8 +136,8 @@ Samples::Samples(
   const bool vectors = IsVector(array->GetNumberOfComponents());
   const auto setSteering = [&](bool flat)
   {
-    this->Steering = vectors ? MakeVectorReader(array, this->InAxes, flat)
-                             : MakeTensorReader(array, this->InAxes, flat);
+    this->Steering = vectors ? MakeVectorReader(array, this->InAxes, flat, plane)
+                             : MakeTensorReader(array, this->InAxes, flat, plane);
     const std::vector<unsigned char>& hidden = this->Hidden.Get(cells);
     if (!hidden.empty())
     {

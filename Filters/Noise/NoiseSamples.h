@@ -28,10 +28,11 @@ public:
   /**
    * `cells`: the array belongs to the cells. `wholeExtent` tells whether an image is flat where the
    * dataset is a piece of it; null: the dataset is all there is. `magnification`: samples of an image
-   * for each one that its vectors were interpolated from.
+   * for each one that its vectors were interpolated from. `plane`: where two components lie, but flat
+   * images have them along their own axes.
    */
   Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent,
-    int magnification);
+    int magnification, const Plane& plane = WorldPlane);
   ~Samples();
 
   vtkIdType GetNumberOfSamples() const;

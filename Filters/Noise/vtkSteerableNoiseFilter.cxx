@@ -209,6 +209,18 @@ struct Extremes
     return largest;
   }
 
+  /// The coordinate plane that all data lie in; x and y if there is none.
+  noise::Plane GetPlane() const
+  {
+    const double longest = std::max({ this->GetSide(0), this->GetSide(1), this->GetSide(2) });
+    const auto flat = [&](int axis) { return this->GetSide(axis) <= 1e-6 * longest; };
+    if (flat(2) || flat(0) == flat(1))
+    {
+      return noise::WorldPlane;
+    }
+    return { flat(0) ? 1 : 0, 2 };
+  }
+
   /// The smallest FeatureSize that the samples carry; 0 if they are nowhere.
   double GetSmallestSize() const { return Snap(4.0 * this->GetSampleSpacing()); }
 
@@ -401,9 +413,9 @@ struct vtkSteerableNoiseFilter::Internals
   }
 
   void Process(const Block& block, const steerable::NoiseParameters& parameters,
-    const int* wholeExtent, int magnification, double progressStart, double progressShare)
+    const noise::Plane& plane, const int* wholeExtent, int magnification, double progressStart, double progressShare)
   {
-    noise::Samples samples(block.DataSet, block.Array, block.Cells, wholeExtent, magnification);
+    noise::Samples samples(block.DataSet, block.Array, block.Cells, wholeExtent, magnification, plane);
     const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
     if (parameters.FollowCurvature)
     {
@@ -694,10 +706,7 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     extremes.Add(block, needsMagnitude, this->FeatureSize <= 0.0);
   }
-  if (this->FeatureSize <= 0.0 || needsMagnitude)
-  {
-    extremes.Reduce(this->Controller);
-  }
+  extremes.Reduce(this->Controller);
   if (failed)
   {
     vtkErrorMacro(<< internals.Why);
@@ -723,7 +732,7 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
     {
-      internals.Process(blocks[i], parameters, hasWhole ? wholeExtent : nullptr,
+      internals.Process(blocks[i], parameters, extremes.GetPlane(), hasWhole ? wholeExtent : nullptr,
         hasWhole ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
         1.0 / blocks.size());
     }

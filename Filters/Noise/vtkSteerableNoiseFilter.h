@@ -16,8 +16,11 @@
  *
  * Vectors without a direction (zero, NaN, infinite) get isotropic noise and are counted in one warning.
  * A missing array is an error in a plain dataset; a block of a composite without it is passed on and
- * counted. With FeatureSize 0, or ReferenceMagnitude 0 and StrengthMode Magnitude, the value is
- * agreed on by all ranks of the Controller, which all have to take part.
+ * counted. Automatic values and the plane of two components are agreed on by all ranks of the
+ * Controller, which all have to take part.
+ *
+ * Two components (tensors: four) lie in the coordinate plane that all the data are in (x-y, x-z or y-z), and
+ * along x and y where they are in none; flat images have them along their own axes.
  *
  * @sa
  * vtkPolyDataSubbandNoise

@@ -922,6 +922,44 @@ TEST(SteerableNoiseDataSets, SeamsOfClosedGridsDoNotShow)
   }
 }
 
+/// The same two components in the x-y, x-z and y-z planes: those of vectors with a third that is 0.
+TEST(SteerableNoiseDataSets, TwoComponentsLieInThePlaneOfTheData)
+{
+  const int sizes[3][3] = { { 14, 12, 1 }, { 14, 1, 12 }, { 1, 14, 12 } };
+  for (const auto& size : sizes)
+  {
+    for (const bool structured : { true, false })
+    {
+      auto image = MakeImage(size[0], size[1], size[2]);
+      vtkSmartPointer<vtkDataSet> grid = structured ? Through<vtkImageDataToPointSet>(image)
+                                                    : Through<vtkAppendFilter>(image);
+      const int a = size[0] > 1 ? 0 : 1;
+      const int b = size[2] > 1 ? 2 : 1;
+      vtkNew<vtkDoubleArray> two;
+      two->SetName("two");
+      two->SetNumberOfComponents(2);
+      vtkDataArray* three = grid->GetPointData()->GetVectors();
+      for (vtkIdType i = 0; i < three->GetNumberOfTuples(); ++i)
+      {
+        three->SetComponent(i, 3 - a - b, 0.0);
+        two->InsertNextTuple2(three->GetComponent(i, a), three->GetComponent(i, b));
+      }
+      grid->GetPointData()->AddArray(two);
+      const auto noise = [&](const char* name)
+      {
+        return Values(Apply(grid,
+          [&](vtkSteerableNoiseFilter* f)
+          {
+            f->SetFeatureSize(4.0);
+            f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
+          }).Output);
+      };
+      EXPECT_LT(LargestDifference(noise("two"), noise(three->GetName())), 1e-5)
+        << a << b << " structured " << structured;
+    }
+  }
+}
+
 TEST(SteerableNoiseDataSets, ACreaseKeepsItsNormals)
 {
   // The faces of a cube, and each of them alone.

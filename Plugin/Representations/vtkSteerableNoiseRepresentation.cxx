@@ -74,11 +74,19 @@ STEERABLENOISE_FORWARD(StrengthMode, int)
 STEERABLENOISE_FORWARD(Basis, int)
 STEERABLENOISE_FORWARD(Octaves, int)
 STEERABLENOISE_FORWARD(Seed, int)
-STEERABLENOISE_FORWARD(ColorMode, int)
 STEERABLENOISE_FORWARD(FollowCurvature, bool)
 STEERABLENOISE_FORWARD(Animate, bool)
 STEERABLENOISE_FORWARD(VectorsPerCell, bool)
 STEERABLENOISE_FORWARD(UseMaskColor, bool)
+
+// A mapper's own ColorMode is VTK's.
+void vtkSteerableNoiseRepresentation::SetColorMode(int mode)
+{
+  for (vtkSteerableNoiseMapper* mapper : this->GetMappers())
+  {
+    mapper->SetNoiseColorMode(mode);
+  }
+}
 
 void vtkSteerableNoiseRepresentation::SetMaskColor(double red, double green, double blue)
 {

@@ -587,7 +587,7 @@ STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthBy,
 STEERABLENOISE_OPTION(Basis, int, Model.Surflet,
   Basis == STREAKS ? steerable::Basis::Streaks : steerable::Basis::Gradient, VARIANT)
 // The first decides on which pass the geometry is drawn, the second on what is uploaded.
-STEERABLENOISE_OPTION(ColorMode, int, ColorMode, Clamp<int>(ColorMode, MULTIPLY, OPACITY),
+STEERABLENOISE_OPTION(NoiseColorMode, int, ColorMode, Clamp<int>(NoiseColorMode, MULTIPLY, OPACITY),
   this->Modified())
 STEERABLENOISE_OPTION(VectorsPerCell, bool, VectorsPerCell, VectorsPerCell,
   this->Internal->PerCellTime.Modified();
@@ -744,7 +744,7 @@ void vtkSteerableNoiseMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Gain: " << this->GetGain() << "\n"
      << indent << "Seed: " << this->GetSeed() << "\n"
      << indent << "VectorsPerCell: " << this->GetVectorsPerCell() << "\n"
-     << indent << "ColorMode: " << this->GetColorMode() << "\n"
+     << indent << "NoiseColorMode: " << this->GetNoiseColorMode() << "\n"
      << indent << "NoiseIntensity: " << this->GetNoiseIntensity() << "\n"
      << indent << "NoiseContrast: " << this->GetNoiseContrast() << "\n"
      << indent << "UseMaskColor: " << this->GetUseMaskColor() << "\n";

@@ -57,7 +57,7 @@ public:
     PIXELS = 0,
     WORLD = 1
   };
-  enum ColorModeType
+  enum NoiseColorModeType
   {
     MULTIPLY = 0,
     BLEND = 1,
@@ -219,8 +219,8 @@ public:
    * (Surface LIC's meaning); LIGHTNESS: changes the lightness only, so that a colour map stays readable;
    * OPACITY: dark places become transparent.
    */
-  void SetColorMode(int mode);
-  int GetColorMode();
+  void SetNoiseColorMode(int mode);
+  int GetNoiseColorMode();
   ///@}
 
   ///@{

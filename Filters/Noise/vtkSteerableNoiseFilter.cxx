@@ -56,6 +56,7 @@ double GetLongest(vtkDataArray* array, const std::vector<unsigned char>& hidden)
 {
   constexpr vtkIdType chunkSize = 4096;
   vtkSMPThreadLocal<double> longest(0.0);
+  double all = 0.0;
   noise::WithThreads(
     [&]
     {
@@ -77,12 +78,12 @@ double GetLongest(vtkDataArray* array, const std::vector<unsigned char>& hidden)
             }
           }
         });
+      // In here: each backend has thread-local values of its own, and the sequential one none of these.
+      for (const double here : longest)
+      {
+        all = std::max(all, here);
+      }
     });
-  double all = 0.0;
-  for (const double here : longest)
-  {
-    all = std::max(all, here);
-  }
   return all;
 }
 

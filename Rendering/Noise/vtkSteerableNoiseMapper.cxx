@@ -315,7 +315,7 @@ protected:
     const auto* found = internals.Find(data);
     if (internals.Variant.PerCell)
     {
-      this->AppendCells(block, data, found, actor);
+      this->AppendCells(data, found, actor);
       return;
     }
     const noise::SurfaceFields fields = found ? found->Fields : noise::SurfaceFields();
@@ -354,13 +354,14 @@ private:
   }
 
   /// Three texels for each primitive: what steers it, then normal and curvature or the rest of a tensor.
-  void AppendCells(BlockData* block, vtkPolyData* data,
+  void AppendCells(vtkPolyData* data,
     const vtkSteerableNoiseMapper::Internals::Block* found, vtkActor* actor)
   {
     vtkCellArray* cells[4] = { data->GetVerts(), data->GetLines(), data->GetPolys(),
       data->GetStrips() };
-    block->CellCellMap->Update(
-      cells, actor->GetProperty()->GetRepresentation(), data->GetPoints());
+    // The block's own map may know how many primitives there are, but not whose they are.
+    vtkNew<vtkOpenGLCellToVTKCellMap> map;
+    map->Update(cells, actor->GetProperty()->GetRepresentation(), data->GetPoints());
     const auto append = [this](vtkFloatArray* array, vtkIdType cell, int component)
     {
       for (int c = 0; c < 4; ++c)
@@ -370,9 +371,9 @@ private:
             : 0.0f);
       }
     };
-    for (std::size_t i = 0; i < static_cast<std::size_t>(block->CellCellMap->GetSize()); ++i)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(map->GetSize()); ++i)
     {
-      const vtkIdType cell = block->CellCellMap->GetValue(i);
+      const vtkIdType cell = map->GetValue(i);
       const noise::SurfaceFields fields =
         found && found->PerCell ? found->Fields : noise::SurfaceFields();
       const bool tensors = fields.Steering && fields.Steering->GetNumberOfComponents() == 6;

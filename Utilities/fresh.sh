@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # The README's promise on a machine with nothing installed: bash Utilities/fresh.sh bookworm|trixie|sid
 # Makes a minimal Debian in a temporary folder, copies the tree (and ../shared if there) in, and runs the
-# README's two commands as root, and the first once more as a user with sudo. Prints a line for each step, and
-# the end of a step's log where it fails. Needs root, 10 GB and some minutes; downloads what a new machine would.
+# README's two commands as root, the first once more as a user with sudo, and then every command line of the
+# documentation. Prints a line for each step, and the end of a step's log where it fails. Needs root, 10 GB
+# and some minutes; downloads what a new machine would.
 #
 # FRESH_TEST_OPTIONS: options for ctest in the fresh system, such as "-R Kernel"; none: all tests.
 set -euo pipefail
@@ -117,6 +118,9 @@ inside() {
   step "test.sh as root" in_system root bash Utilities/test.sh ${FRESH_TEST_OPTIONS:-}
   echo "$suite: $(grep -hE 'tests passed|tests failed' "$scratch/log" || echo "no summary of ctest")"
   grep -hE '\*\*\*(Skipped|Not Run)|\(Skipped\)' "$scratch/log" | sed "s/^/$suite: /" || true
+  # test.sh has the tests built; what documentation says is run beside it, in the same folder.
+  step "commands of the documentation" in_system root bash -c 'set -o pipefail
+    python3 Utilities/documented-commands.py README.md Documentation/user-guide.md Documentation/contributing.md | bash -eux'
   echo "$suite: $(in_system root pvpython --version 2>&1 | tail -n 1), $(du -shx "$system" | cut -f1) in all"
 }
 

@@ -17,8 +17,8 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
 # Name: smallest standard deviation of brightness (0 to 255), smallest alignment.
 PICTURES = {
-    "wake_noise.png": (25.0, 0.5),
-    "wake_noise_over_speed.png": (25.0, 0.5),
+    "wake_noise.png": (40.0, 0.9),
+    "wake_noise_over_speed.png": (20.0, 0.9),
 }
 PATCH = 16  # pixels; some streaks wide and shorter than the bends of the flow
 

@@ -64,6 +64,8 @@ struct vtkSteerableNoiseMapper::Internals
   noise::ShaderVariant Variant;
   vtkTimeStamp VariantTime;
   vtkTimeStamp PerCellTime;
+  /// When something that is uploaded changed.
+  vtkTimeStamp FieldsTime;
   std::map<vtkPolyData*, Block> Blocks;
   bool AnyNoise = false;
   double OwnDiagonal = 0.0;
@@ -167,6 +169,12 @@ protected:
   bool ShowsNoise(vtkRenderer* renderer)
   {
     return this->GetInternals().AnyNoise && !renderer->GetSelector();
+  }
+
+  bool GetNeedToRebuildBufferObjects(vtkRenderer* renderer, vtkActor* actor) override
+  {
+    return this->Superclass::GetNeedToRebuildBufferObjects(renderer, actor) ||
+      this->VBOBuildTime < this->GetInternals().FieldsTime;
   }
 
   bool GetNeedToRebuildShaders(vtkOpenGLHelper& cells, vtkRenderer* renderer, vtkActor* actor) override
@@ -494,11 +502,16 @@ void vtkSteerableNoiseMapper::FindFields()
         block.Fields = noise::ComputeSurfaceFields(data, array, cells, perCell);
         block.PerCell = perCell;
         block.Time = time;
+        internals.FieldsTime.Modified();
       }
       variant.Tensors = tensors;
       variant.PerCell = perCell;
       internals.AnyNoise = true;
     });
+  if (blocks.size() < internals.Blocks.size())
+  {
+    internals.FieldsTime.Modified();
+  }
   internals.Blocks.swap(blocks);
   vtkBoundingBox bounds;
   internals.OwnLongest = 0.0;
@@ -587,12 +600,11 @@ STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthBy,
   StrengthMode == MAGNITUDE ? steerable::StrengthMode::Magnitude : steerable::StrengthMode::Constant, )
 STEERABLENOISE_OPTION(Basis, int, Model.Surflet,
   Basis == STREAKS ? steerable::Basis::Streaks : steerable::Basis::Gradient, VARIANT)
-// The first decides on which pass the geometry is drawn, the second on what is uploaded.
+// Decides on which pass the geometry is drawn.
 STEERABLENOISE_OPTION(NoiseColorMode, int, ColorMode, Clamp<int>(NoiseColorMode, MULTIPLY, OPACITY),
   this->Modified())
 STEERABLENOISE_OPTION(VectorsPerCell, bool, VectorsPerCell, VectorsPerCell,
-  this->Internal->PerCellTime.Modified();
-  this->Modified())
+  this->Internal->PerCellTime.Modified())
 
 void vtkSteerableNoiseMapper::SetFeatureSizeMode(int mode)
 {

@@ -712,6 +712,29 @@ TEST(SteerableNoiseFilter, MagnificationBeyondMemoryIsRefusedBefore)
   EXPECT_NE(messages->Text.find("Lower Magnification"), std::string::npos) << messages->Text;
 }
 
+TEST(SteerableNoiseFilter, MagnificationOfAnEmptyImageIsEmpty)
+{
+  // A rank without data has one. Times 4, its extent (0, -1) once became (0, -4), a negative number of samples.
+  for (const int factor : { 1, 4, 16 })
+  {
+    vtkNew<vtkImageData> image;
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    filter->SetInputData(image);
+    filter->SetMagnification(factor);
+    filter->Update();
+    auto* output = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
+    ASSERT_NE(output, nullptr);
+    EXPECT_EQ(output->GetNumberOfPoints(), 0) << factor;
+    EXPECT_EQ(output->GetNumberOfCells(), 0) << factor;
+    int extent[6];
+    output->GetExtent(extent);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      EXPECT_EQ(extent[2 * axis + 1] - extent[2 * axis], -1) << factor << ", axis " << axis;
+    }
+  }
+}
+
 TEST(SteerableNoiseFilter, OutputMetricIsTheMetric)
 {
   auto image = MakeImage(8, 7, 6);

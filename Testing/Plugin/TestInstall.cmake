@@ -8,16 +8,15 @@ function (run)
   endif ()
   message(STATUS "${output}")
 endfunction ()
+# Program, Python package and plugin find their libraries by themselves.
+unset(ENV{LD_LIBRARY_PATH})
 run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${prefix}")
 run("${CMAKE_COMMAND}" -S "${CONSUMER}" -B "${SCRATCH}/consumer" -G Ninja
   "-DCMAKE_PREFIX_PATH=${prefix}" -DCMAKE_BUILD_TYPE=Release)
 run("${CMAKE_COMMAND}" --build "${SCRATCH}/consumer")
-set(ENV{LD_LIBRARY_PATH} "${prefix}/${LIBDIR}")
 run("${SCRATCH}/consumer/useSteerableNoise")
 set(ENV{PYTHONPATH} "${prefix}/${LIBDIR}/python3/dist-packages")
 run("${PVPYTHON}" -c
-  "from steerablenoise import vtkSteerableNoiseFilter; print(vtkSteerableNoiseFilter().GetQuality())")
-set(ENV{LD_LIBRARY_PATH} "")
-# The installed plugin finds its library by itself.
+  "from steerablenoise import vtkSteerableNoiseFilter, vtkSteerableNoiseMapper; print(vtkSteerableNoiseFilter().GetStreakLength(), vtkSteerableNoiseMapper().GetStreakLength())")
 run("${PVPYTHON}" -c
   "from paraview.simple import *; LoadPlugin('${prefix}/${LIBDIR}/paraview/plugins/SteerableNoise/SteerableNoise.so', remote=False, ns=globals()); print(SteerableNoise(Input=Wavelet()).Quality)")

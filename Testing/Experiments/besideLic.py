@@ -174,7 +174,7 @@ def noise_of(field):
 def convolved(field, steps, sigma, runs=RUNS):
     """White noise smoothed by a Gaussian of `sigma` pixels, and convolved along the lines."""
     white = smooth(numpy.random.default_rng(1).standard_normal(field.shape[:2]), sigma)
-    grain = image_of(0.5 + 0.15 * white / white.std(), "grain")
+    grain = image_of(numpy.clip(0.5 + 0.1 * white / white.std(), 0.0, 1.0), "grain")
     grain.GetPointData().SetActiveScalars("grain")
     lic = vtkImageDataLIC2D()
     lic.SetInputDataObject(0, vectors_of(field))

@@ -106,15 +106,15 @@ def gradient(values):
     return convolve(convolve(values, d, 1), g, 0), convolve(convolve(values, g, 1), d, 0)
 
 
-def along_and_across(picture, field):
-    u = field / numpy.maximum(numpy.linalg.norm(field, axis=-1, keepdims=True), 1e-30)
-    gx, gy = gradient(picture)
-    return gx * u[..., 0] + gy * u[..., 1], gy * u[..., 0] - gx * u[..., 1]
+def unit(field):
+    return field / numpy.maximum(numpy.linalg.norm(field, axis=-1, keepdims=True), 1e-30)
 
 
 def width(picture, field, counts):
-    _, across = along_and_across(picture, field)
-    return picture[counts].std() / across[counts].std()
+    """Of lines, in pixels; nothing is smoothed before the differences, else the finest would not count."""
+    dy, dx = numpy.gradient(picture)
+    u = unit(field)
+    return picture[counts].std() / (dy * u[..., 0] - dx * u[..., 1])[counts].std()
 
 
 def measure(picture, field, counts):
@@ -122,12 +122,13 @@ def measure(picture, field, counts):
     gx, gy = gradient(picture)
     xx, xy, yy = (smooth(product, FEATURE) for product in (gx * gx, gx * gy, gy * gy))
     major = 0.5 * numpy.arctan2(2.0 * xy, xx - yy)
-    u = field / numpy.maximum(numpy.linalg.norm(field, axis=-1, keepdims=True), 1e-30)
+    u = unit(field)
     # The lines are at right angles to the largest change.
     sine = numpy.abs(numpy.cos(major) * u[..., 0] + numpy.sin(major) * u[..., 1])
     angles = numpy.degrees(numpy.arcsin(numpy.minimum(sine, 1.0)))[counts]
     coherence = (numpy.hypot(xx - yy, 2.0 * xy) / numpy.maximum(xx + yy, 1e-30))[counts]
-    along, across = along_and_across(picture, field)
+    along = gx * u[..., 0] + gy * u[..., 1]
+    across = gy * u[..., 0] - gx * u[..., 1]
     ratio = numpy.sqrt((across[counts] ** 2).mean() / (along[counts] ** 2).mean())
     return numpy.median(angles), angles.mean(), ratio, coherence.mean()
 
@@ -246,4 +247,4 @@ for name, make in (("circular", circular), ("three vortices", three_vortices), (
             missed |= median > limits[0] or mean > limits[1] or ratio < limits[2]
     if name == "wake":
         save("noise_and_lic.png", [grey(picture, counts, CLOSE) for _, picture, _ in pictures[:2]])
-sys.exit(missed)
+sys.exit(int(missed))

@@ -186,18 +186,13 @@ def convolved(field, steps, sigma, runs=RUNS):
 
 
 def as_wide(field, counts, steps, wanted):
-    """LIC whose lines have this width: secants in how much its noise is smoothed."""
-    def width_at(sigma):
-        return width(convolved(field, steps, sigma, runs=1)[0], field, counts)
-
-    a, b = 0.6, 1.0
-    width_a, width_b = width_at(a), width_at(b)
-    for _ in range(8):
-        if abs(width_b - wanted) < 0.01:
-            break
-        a, b = b, min(max(b + (wanted - width_b) * (b - a) / (width_b - width_a), 0.3), 3.0)
-        width_a, width_b = width_b, width_at(b)
-    return convolved(field, steps, b)
+    """LIC whose lines have this width: by bisection of how much its noise is smoothed."""
+    low, high = 0.3, 1.7
+    for _ in range(7):
+        middle = 0.5 * (low + high)
+        picture, _ = convolved(field, steps, middle, runs=1)
+        low, high = (middle, high) if width(picture, field, counts) < wanted else (low, middle)
+    return convolved(field, steps, 0.5 * (low + high))
 
 
 def grey(picture, counts, box):

@@ -1,7 +1,7 @@
 """The pictures of README.md and of Documentation/gallery.md, all from the cylinder wake in Data/.
 
 Usage: pvpython Utilities/gallery.py Data/cylinder_wake.vti Documentation/images
-STEERABLENOISE_PLUGIN names the plugin; a display is needed for the picture of LIC only.
+STEERABLENOISE_PLUGIN names the plugin. The pair with LIC is of Testing/Experiments/besideLic.py.
 """
 import os
 import sys
@@ -137,40 +137,6 @@ def over_speed():
 
 save("wake_noise_over_speed", crop(over_speed(), (2.8, 15.8, 1.8, 6.2)))
 
-
-# The same field through line integral convolution: vtkImageDataLIC2D wants vectors on points.
-def convolved(points, steps):
-    from vtkmodules.vtkRenderingLICOpenGL2 import vtkImageDataLIC2D
-
-    image = vtkImageData()
-    image.ShallowCopy(points)
-    image.GetPointData().SetActiveVectors("velocity")
-    lic = vtkImageDataLIC2D()
-    lic.SetInputData(image)
-    lic.SetMagnification(FINE)
-    lic.SetSteps(steps)
-    lic.SetStepSize(1.0 / (FINE * 2.0 ** 0.5))  # in diagonals of a cell: one pixel
-    lic.Update()
-    result = lic.GetOutput()
-    columns, rows, _ = result.GetDimensions()
-    scalars = vtk_to_numpy(result.GetPointData().GetScalars())
-    return scalars.reshape(rows, columns, -1)[..., 0].astype(float)
-
-
-points = CellDatatoPointData(Input=wake)
-UpdatePipeline(proxy=points)
-lic = convolved(image_of(points), 20)
-inside = crop(lic)
-middle, spread = inside[inside > 0].mean(), inside[inside > 0].std()
-finer = SteerableNoise(Input=points, SelectInputVectors=["POINTS", "velocity"], FeatureSize=0.08, Magnification=FINE, MaskThreshold=1e-6)
-UpdatePipeline(proxy=finer)
-image = image_of(finer)
-columns, rows, _ = image.GetDimensions()
-noise = vtk_to_numpy(image.GetPointData().GetArray("SteerableNoise")).reshape(rows, columns)
-sheet("noise_and_lic", [
-    ("Steerable Noise, FeatureSize 0.08", grey(crop(noise))),
-    ("Line integral convolution, 20 steps of a pixel each way", grey(crop((lic - middle) / spread))),
-])
 
 # The paper's own model.
 PAPER = dict(LatticeWindow=1, EigenvalueSum=4)

@@ -461,10 +461,10 @@ struct Sample
       for (int axis = 0; axis < 2; ++axis)
       {
         const V normal = this->Normal[axis];
-        this->HighNormal[axis] = RoundTo(normal, 256.0f);
+        this->HighNormal[axis] = RoundTo(normal, 16384.0f);
         this->LowNormal[axis] =
           hn::Add(hn::Sub(normal, this->HighNormal[axis]), this->LowNormal[axis]);
-        high[axis] = RoundTo(this->Fraction[axis], 32768.0f);
+        high[axis] = RoundTo(this->Fraction[axis], 65536.0f);
         low[axis] = hn::Sub(this->Fraction[axis], high[axis]);
       }
       this->AlongFraction = Dot(this->U, this->Fraction);
@@ -1656,7 +1656,7 @@ private:
       else
       {
         // n . v of a far corner is a small difference of large products. Of the high parts of n and the
-        // fraction products and, near the flow, the difference are exact. Where streamlines bend s² is
+        // fraction products and, up to 256 cells, the difference are exact. Where streamlines bend s² is
         // a part of it, so s is as precise there.
         const V(&high)[2] = sample.HighNormal;
         const V(&low)[2] = sample.LowNormal;
@@ -1670,11 +1670,16 @@ private:
           s = hn::MulAdd(
             sample.U[0], offset[0], hn::MulSub(sample.U[1], offset[1], sample.AlongFraction));
         }
-        t = hn::Add(
-          hn::Sub(hn::MulAdd(high[0], offset[0], hn::Mul(high[1], offset[1])), sample.HighAcross),
-          hn::MulAdd(low[0], offset[0], hn::MulSub(low[1], offset[1], sample.LowAcross)));
+        t = hn::Sub(
+          hn::MulAdd(high[0], offset[0], hn::Mul(high[1], offset[1])), sample.HighAcross);
+        if constexpr (Curved)
+        {
+          // Before anything is rounded: of the sag, many cells, little is left.
+          t = hn::NegMulAdd(hn::Mul(s, s), sample.HalfBend, t);
+        }
+        t = hn::Add(t, hn::MulAdd(low[0], offset[0], hn::MulSub(low[1], offset[1], sample.LowAcross)));
       }
-      if constexpr (Curved)
+      if constexpr (Curved && Variant)
       {
         t = hn::NegMulAdd(hn::Mul(s, s), sample.HalfBend, t);
       }
@@ -1693,16 +1698,23 @@ private:
     {
       s = Dot(v, sample.U);
       V t[N];
-      for (int i = 0; i < N; ++i)
+      const V sag = hn::Mul(hn::Mul(Const(0.5f), s), s);
+      if (Curved && !Variant && !this->Setup.Biaxial)
       {
-        t[i] = hn::NegMulAdd(s, sample.U[i], v[i]);
-      }
-      if constexpr (Curved)
-      {
-        const V sag = hn::Mul(hn::Mul(Const(0.5f), s), s);
+        // As in the plane: the offset is exact, and of the sag, many cells, little is left.
+        // (With axes of its own the parts are small already, and near corners would lose by it.)
         for (int i = 0; i < N; ++i)
         {
-          t[i] = hn::NegMulAdd(sag, sample.Bend[i], t[i]);
+          t[i] = hn::NegMulAdd(sag, sample.Bend[i], offset[i]);
+          t[i] = hn::Sub(hn::NegMulAdd(s, sample.U[i], t[i]), sample.Fraction[i]);
+        }
+      }
+      else
+      {
+        for (int i = 0; i < N; ++i)
+        {
+          t[i] = hn::NegMulAdd(s, sample.U[i], v[i]);
+          t[i] = Curved ? hn::NegMulAdd(sag, sample.Bend[i], t[i]) : t[i];
         }
       }
       const V unmoved = s;

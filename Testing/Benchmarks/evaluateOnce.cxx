@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * One evaluation at one SIMD level, for counting its instructions with callgrind:
- * evaluateOnce LEVEL 2|3 image|points QUALITY plain|defaults. Prints the number of points.
+ * evaluateOnce LEVEL 2|3 image|points QUALITY plain|paper|defaults. Prints the number of points. Plain is the
+ * paper's model without normalisation and curvature, paper with both; the defaults have no Quality.
  */
 #include "SteerableNoise.h"
 
@@ -20,7 +21,7 @@ int main(int argc, char** argv)
 {
   if (argc != 6)
   {
-    std::fprintf(stderr, "usage: evaluateOnce LEVEL 2|3 image|points QUALITY plain|defaults\n");
+    std::fprintf(stderr, "usage: evaluateOnce LEVEL 2|3 image|points QUALITY plain|paper|defaults\n");
     return 2;
   }
   for (std::int64_t target : { HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_SCALAR })
@@ -33,9 +34,12 @@ int main(int argc, char** argv)
   const int dimension = std::atoi(argv[2]);
   NoiseParameters p;
   p.FeatureSize = 16.0;
-  p.LatticeWindow = true; // the paper's own model
-  p.EigenvalueSum = 4.0;
-  p.Quality = std::atoi(argv[4]);
+  if (std::strcmp(argv[5], "defaults") != 0)
+  {
+    p.LatticeWindow = true;
+    p.EigenvalueSum = 4.0;
+    p.Quality = std::atoi(argv[4]);
+  }
   if (std::strcmp(argv[5], "plain") == 0)
   {
     p.FollowCurvature = false;

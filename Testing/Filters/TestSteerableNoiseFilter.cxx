@@ -472,6 +472,74 @@ TEST(SteerableNoiseFilter, TensorOfAVectorGivesTheVectorsNoise)
   }
 }
 
+TEST(SteerableNoiseFilter, TakesVectorsBeforeTensorsWhereNoneAreActive)
+{
+  // The tensor comes first, by its name, its place and as the active one.
+  for (const bool cells : { false, true })
+  {
+    auto image = MakeImage(20, 16, 1, 1.0, cells);
+    const std::vector<float> ofVectors = Noise(image);
+    vtkDataSetAttributes* const source =
+      image->GetAttributes(cells ? vtkDataObject::CELL : vtkDataObject::POINT);
+    vtkNew<vtkFloatArray> tensors;
+    tensors->SetName("a_tensor");
+    tensors->SetNumberOfComponents(9);
+    tensors->SetNumberOfTuples(source->GetNumberOfTuples());
+    tensors->Fill(0.0);
+    for (vtkIdType i = 0; i < tensors->GetNumberOfTuples(); ++i)
+    {
+      tensors->SetComponent(i, 4, 1.0); // along y everywhere
+    }
+    vtkNew<vtkImageData> both;
+    both->CopyStructure(image);
+    vtkDataSetAttributes* const attributes =
+      both->GetAttributes(cells ? vtkDataObject::CELL : vtkDataObject::POINT);
+    attributes->SetTensors(tensors);
+    const std::vector<float> ofTensors = Noise(both);
+    attributes->AddArray(source->GetArray("velocity"));
+    ASSERT_EQ(attributes->GetVectors(), nullptr);
+    EXPECT_EQ(Noise(both), ofVectors);
+    EXPECT_NE(ofTensors, ofVectors);
+    EXPECT_TRUE(AllFinite(ofTensors)) << "tensors alone are taken";
+  }
+}
+
+TEST(SteerableNoiseFilter, SaysWhatToSetInsteadOfQuality)
+{
+  struct Case
+  {
+    int Quality;
+    double MinimumEigenvalue;
+    bool LatticeWindow;
+    const char* Length; // that it names; null: it has nothing to say
+  };
+  // As long: sqrt((Quality + 1) / MinimumEigenvalue).
+  const Case cases[] = { { 4, 0.5, false, nullptr }, { 8, 0.5, false, "StreakLength (4.2 is" },
+    { 4, 0.05, false, "StreakLength (10 is" }, { 0, 1.0, false, "StreakLength (1 is" },
+    { 8, 0.05, true, nullptr } };
+  auto image = MakeImage(20, 20, 1);
+  for (const Case& test : cases)
+  {
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    filter->SetInputData(image);
+    filter->SetFeatureSize(5.0);
+    filter->SetQuality(test.Quality);
+    filter->SetMinimumEigenvalue(test.MinimumEigenvalue);
+    filter->SetLatticeWindow(test.LatticeWindow);
+    const auto messages = Listen(filter);
+    filter->Update();
+    EXPECT_EQ(messages->Errors, 0) << messages->Text;
+    EXPECT_EQ(messages->Warnings, test.Length ? 1 : 0) << messages->Text;
+    if (test.Length)
+    {
+      EXPECT_NE(messages->Text.find(test.Length), std::string::npos) << messages->Text;
+      EXPECT_NE(messages->Text.find("LatticeWindow 1 and EigenvalueSum 4"), std::string::npos)
+        << messages->Text;
+    }
+    EXPECT_TRUE(AllFinite(Values(filter->GetOutputDataObject(0))));
+  }
+}
+
 TEST(SteerableNoiseFilter, TimeMovesASteadyFlow)
 {
   auto image = MakeImage(40, 30, 1);

@@ -34,8 +34,8 @@ constexpr double BentSurfaceBound = 2.2e-6;
  */
 constexpr double VariantBound = 4e-6;
 constexpr double LooseBound = 7e-6;
-/// The sag of a bent streak is half its length, and so grows what its rounding does.
-constexpr double LongBound = 1.1e-5;
+/// The sag of a bent streak grows with the square of its length, to 200 cells at 20, and so does its rounding.
+constexpr double LongBound = 1.2e-5;
 /// Variants without the window reach 2.5 times as far as at Quality 2.
 constexpr double FreeVariantFactor = 2.0;
 
@@ -1171,14 +1171,15 @@ TEST(SteerableNoise, GivesFiniteNoiseWithoutADirection)
       parameters.FollowCurvature = curvature > 0.0;
       RandomSamples samples(parameters.LatticeWindow ? 600 : 300, 30.0, curvature, 8);
       const std::vector<float> healthy = FastNoise<3>(parameters, samples, Steering::Vectors);
-      for (int i = 0; i < 60; ++i)
+      const std::size_t directionless = samples.Count / 10;
+      for (std::size_t i = 0; i < directionless; ++i)
       {
         std::copy_n(bad[i % 6], 3, samples.Vectors.begin() + 3 * 10 * i);
       }
       EvaluationCounts counts;
       const std::vector<float> noise =
         FastNoise<3>(parameters, samples, Steering::Vectors, &counts);
-      EXPECT_EQ(counts.Degenerate, 60u);
+      EXPECT_EQ(counts.Degenerate, directionless);
       EXPECT_EQ(counts.Stagnant, 0u);
       for (std::size_t i = 0; i < samples.Count; ++i)
       {
@@ -1191,7 +1192,7 @@ TEST(SteerableNoise, GivesFiniteNoiseWithoutADirection)
       // The isotropic metric, as the reference has it, bent by nothing.
       ExpectReference<3>("3D without a direction", parameters, samples, Steering::Vectors);
       FastNoise<2>(parameters, samples, Steering::Vectors, &counts);
-      EXPECT_EQ(counts.Degenerate, 60u);
+      EXPECT_EQ(counts.Degenerate, directionless);
       ExpectReference<2>("2D without a direction", parameters, samples, Steering::Vectors);
     }
   }

@@ -1,4 +1,4 @@
-"""Pictures of the cylinder wake in Data/: the noise in grey, and over the colours of speed.
+"""Pictures of the cylinder wake in Data/: the noise in the view, as an array in grey, and over the colours of speed.
 
 Usage: pvpython demo.py DATA.vti OUTPUT_FOLDER, with STEERABLENOISE_PLUGIN naming the plugin.
 """
@@ -11,6 +11,7 @@ LoadPlugin(os.environ["STEERABLENOISE_PLUGIN"], remote=False, ns=globals())
 data, folder = sys.argv[1:3]
 
 wake = OpenDataFile(data)
+UpdatePipeline(proxy=wake)
 noise = SteerableNoise(
     Input=wake,
     SelectInputVectors=["CELLS", "velocity"],
@@ -27,6 +28,17 @@ view.CameraParallelProjection = 1
 view.CameraFocalPoint = [10, 4, 0]
 view.CameraPosition = [10, 4, 10]
 view.CameraParallelScale = 4
+
+# The noise in the view: the representation finds the vectors, here on cells, by itself.
+display = Show(wake, view)
+display.SetRepresentationType("Steerable Noise")
+ColorBy(display, ("CELLS", "velocity", "Magnitude"))
+display.RescaleTransferFunctionToDataRange(True)
+display.SetScalarBarVisibility(view, False)
+path = os.path.join(folder, "wake_in_the_view.png")
+SaveScreenshot(path, view)
+print(path)
+Hide(wake, view)
 
 # The noise in grey, two standard deviations to either side.
 grey = Show(noise, view)

@@ -15,8 +15,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <limits>
 #include <sstream>
+#include <utility>
 
 namespace noise
 {
@@ -87,9 +90,10 @@ void ToFloats(const double* values, int count, float* out)
 class VectorReader : public steerable::TupleReader<float>
 {
 public:
-  VectorReader(vtkDataArray* array, const Axes& axes, bool inPlane)
+  VectorReader(vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
     : Array(array)
     , InAxes(axes)
+    , TwoAxes(inPlane ? WorldPlane : plane)
     , Rotated(axes != WorldAxes && !(inPlane && array->GetNumberOfComponents() == 2))
   {
   }
@@ -101,6 +105,12 @@ public:
       [&](std::size_t i, const double* tuple)
       {
         double vector[3] = { tuple[0], tuple[1], components > 2 ? tuple[2] : 0.0 };
+        if (components == 2 && this->TwoAxes != WorldPlane)
+        {
+          vector[0] = vector[1] = 0.0;
+          vector[this->TwoAxes[0]] = tuple[0];
+          vector[this->TwoAxes[1]] = tuple[1];
+        }
         if (this->Rotated)
         {
           const double world[3] = { vector[0], vector[1], vector[2] };
@@ -122,15 +132,17 @@ public:
 private:
   vtkDataArray* Array;
   Axes InAxes;
+  Plane TwoAxes;
   bool Rotated;
 };
 
 class TensorReader : public steerable::TupleReader<float>
 {
 public:
-  TensorReader(vtkDataArray* array, const Axes& axes, bool inPlane)
+  TensorReader(vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
     : Array(array)
     , InAxes(axes)
+    , TwoAxes(inPlane ? WorldPlane : plane)
     , Rotated(axes != WorldAxes && !(inPlane && array->GetNumberOfComponents() == 4))
   {
   }
@@ -144,9 +156,11 @@ public:
         double full[3][3] = {};
         if (components == 4)
         {
-          full[0][0] = t[0];
-          full[0][1] = full[1][0] = 0.5 * (t[1] + t[2]);
-          full[1][1] = t[3];
+          const int a = this->TwoAxes[0];
+          const int b = this->TwoAxes[1];
+          full[a][a] = t[0];
+          full[a][b] = full[b][a] = 0.5 * (t[1] + t[2]);
+          full[b][b] = t[3];
         }
         else if (components == 6)
         {
@@ -194,7 +208,43 @@ public:
 private:
   vtkDataArray* Array;
   Axes InAxes;
+  Plane TwoAxes;
   bool Rotated;
+};
+
+class LeavingOutReader : public steerable::TupleReader<float>
+{
+public:
+  LeavingOutReader(std::unique_ptr<steerable::TupleReader<float>> reader, int components,
+    const std::vector<unsigned char>& left)
+    : Reader(std::move(reader))
+    , Components(components)
+    , Left(left)
+  {
+  }
+  const float* Read(std::size_t first, std::size_t count, float* scratch) const override
+  {
+    const float* tuples = this->Reader->Read(first, count, scratch);
+    const auto values = static_cast<std::ptrdiff_t>(count * this->Components);
+    if (tuples != scratch)
+    {
+      std::copy(tuples, tuples + values, scratch);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      if (this->Left[first + i])
+      {
+        std::fill_n(scratch + i * this->Components, this->Components,
+          std::numeric_limits<float>::quiet_NaN());
+      }
+    }
+    return scratch;
+  }
+
+private:
+  std::unique_ptr<steerable::TupleReader<float>> Reader;
+  std::size_t Components;
+  const std::vector<unsigned char>& Left;
 };
 
 class PositionReader : public steerable::TupleReader<double>
@@ -237,20 +287,20 @@ private:
 } // namespace
 
 std::unique_ptr<steerable::TupleReader<float>> MakeVectorReader(
-  vtkDataArray* array, const Axes& axes, bool inPlane)
+  vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
 {
   auto* floats = vtkFloatArray::FastDownCast(array);
   if (floats && floats->GetNumberOfComponents() == 3 && axes == WorldAxes)
   {
     return std::make_unique<steerable::ContiguousReader<float, 3>>(floats->GetPointer(0));
   }
-  return std::make_unique<VectorReader>(array, axes, inPlane);
+  return std::make_unique<VectorReader>(array, axes, inPlane, plane);
 }
 
 std::unique_ptr<steerable::TupleReader<float>> MakeTensorReader(
-  vtkDataArray* array, const Axes& axes, bool inPlane)
+  vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
 {
-  return std::make_unique<TensorReader>(array, axes, inPlane);
+  return std::make_unique<TensorReader>(array, axes, inPlane, plane);
 }
 
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray* array)
@@ -265,6 +315,48 @@ std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray*
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataSet* dataset)
 {
   return std::make_unique<DataSetPositionReader>(dataset);
+}
+
+std::unique_ptr<steerable::TupleReader<float>> LeaveOut(
+  std::unique_ptr<steerable::TupleReader<float>> reader, int components,
+  const std::vector<unsigned char>& left)
+{
+  return std::make_unique<LeavingOutReader>(std::move(reader), components, left);
+}
+
+void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, double* lengths)
+{
+  const int components = array->GetNumberOfComponents();
+  ForEachTuple(array, first, count,
+    [&](std::size_t i, const double* t)
+    {
+      double sum = 0.0;
+      if (components == 4)
+      {
+        sum = t[0] * t[0] + t[3] * t[3] + 0.5 * (t[1] + t[2]) * (t[1] + t[2]);
+      }
+      else if (components == 6)
+      {
+        sum = t[0] * t[0] + t[1] * t[1] + t[2] * t[2] +
+          2.0 * (t[3] * t[3] + t[4] * t[4] + t[5] * t[5]);
+      }
+      else if (components == 9)
+      {
+        for (int row = 0; row < 3; ++row)
+        {
+          for (int c = 0; c < 3; ++c)
+          {
+            const double mean = 0.5 * (t[3 * row + c] + t[3 * c + row]);
+            sum += mean * mean;
+          }
+        }
+      }
+      else
+      {
+        sum = components > 2 ? t[0] * t[0] + t[1] * t[1] + t[2] * t[2] : t[0] * t[0] + t[1] * t[1];
+      }
+      lengths[i] = std::sqrt(sum);
+    });
 }
 
 vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)

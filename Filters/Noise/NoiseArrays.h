@@ -14,6 +14,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 class vtkDataArray;
 class vtkDataSet;
@@ -35,22 +36,39 @@ inline bool IsTensor(int components)
   return components == 4 || components == 6 || components == 9;
 }
 
+/// World axes that vectors of two components (tensors of four) lie along, outside of images.
+using Plane = std::array<int, 2>;
+constexpr Plane WorldPlane = { 0, 1 };
+
 /**
- * Vectors along the first two or all three of `axes`. Two components are those of the first two world
- * axes, or of the plane itself if `inPlane`.
+ * Vectors along the first two or all three of `axes`. Two components are those of the axes of `plane`, or of the plane itself if `inPlane`.
  */
 std::unique_ptr<steerable::TupleReader<float>> MakeVectorReader(
-  vtkDataArray* array, const Axes& axes, bool inPlane);
+  vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane = WorldPlane);
 
 /// Symmetric part of tensors as XX YY ZZ XY YZ XZ along `axes`. Four components: XX XY YX YY.
 std::unique_ptr<steerable::TupleReader<float>> MakeTensorReader(
-  vtkDataArray* array, const Axes& axes, bool inPlane);
+  vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane = WorldPlane);
 
 /// Coordinates of 3-component arrays.
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray* array);
 
 /// Points of a dataset without an array of them; its GetPoint must be safe to call from threads.
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataSet* dataset);
+
+/**
+ * Tuples of `reader`, which it takes over, with NaN where `left` out: one value for each, not 0 where the
+ * sample shall neither have a direction nor lend one to its neighbours. `left` has to outlive it.
+ */
+std::unique_ptr<steerable::TupleReader<float>> LeaveOut(
+  std::unique_ptr<steerable::TupleReader<float>> reader, int components,
+  const std::vector<unsigned char>& left);
+
+/**
+ * Lengths of the tuples [first, first + count): Euclidean for vectors, all components counted; for tensors
+ * the Frobenius norm of their symmetric part.
+ */
+void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, double* lengths);
 
 /**
  * The array that steers the noise when nobody named one: active vectors, else the first floating-point

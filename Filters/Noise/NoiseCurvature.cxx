@@ -3,6 +3,7 @@
 #include "NoiseCurvature.h"
 
 #include "CellSums.h"
+#include "NoiseCopies.h"
 #include "NoiseThreads.h"
 
 #include "vtkSMPTools.h"
@@ -148,9 +149,11 @@ void ReadCell(vtkDataSet* dataset, vtkIdType id, Vector3d side, bool keepAll, vt
 
 /// Of points, from the cells around them.
 vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
-  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, double cellSize)
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden,
+  double cellSize)
 {
   const CellDimensions dimensions(dataset);
+  const CoincidentPoints copies(dataset, hidden); // before the arrays: it takes memory for a while
   auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfPoints());
   // The noise takes bends up to 1 / cellSize: room for 127 cells of such, and finer than it sees.
   PointSums sums(dataset, curvature, cellSize * (1 << 24));
@@ -159,7 +162,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
     {
       const int type = dataset->GetCellType(id);
       const int dimension = dimensions.Get(type);
-      if (dimension == 0)
+      if (dimension == 0 || hidden.HasCell(id))
       {
         return;
       }
@@ -184,14 +187,16 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
       }
     });
   sums.Finish();
+  copies.Share(curvature, cellSize * (1 << 24), false, 0.0);
   return curvature;
 }
 
 /// Of cells, whose directions go to their points first.
 vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
-  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors)
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden)
 {
   const CellDimensions dimensions(dataset);
+  const CoincidentPoints copies(dataset, hidden);
   auto points = NewOutputArray("Directions", 3, dataset->GetNumberOfPoints());
   PointSums sums(dataset, points, DirectionSteps);
   sums.AddCells(true,
@@ -205,6 +210,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
       }
     });
   sums.Finish();
+  copies.Share(points, DirectionSteps, true, 0.0);
   auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfCells());
   vtkSMPTools::For(0, dataset->GetNumberOfCells(), 1024,
     [&](vtkIdType begin, vtkIdType end)
@@ -233,20 +239,34 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
 } // namespace
 
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
-  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells, double cellSize)
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells,
+  const HiddenSamples& hidden, double cellSize)
 {
-  return cells ? CurvatureOfCells(dataset, vectors) : CurvatureOfPoints(dataset, vectors, cellSize);
+  return cells ? CurvatureOfCells(dataset, vectors, hidden)
+               : CurvatureOfPoints(dataset, vectors, hidden, cellSize);
 }
 
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions)[3],
-  const steerable::TupleReader<double>& positions, const steerable::TupleReader<float>& vectors)
+  const steerable::TupleReader<double>& positions, const steerable::TupleReader<float>& vectors,
+  const std::vector<unsigned char>& hidden)
 {
+  const auto isThere = [&](vtkIdType sample) { return hidden.empty() || !hidden[sample]; };
   const vtkIdType strides[3] = { 1, dimensions[0],
     static_cast<vtkIdType>(dimensions[0]) * dimensions[1] };
   const vtkIdType count = strides[2] * dimensions[2];
   const auto axes = static_cast<int>(
     std::count_if(dimensions, dimensions + 3, [](int samples) { return samples > 1; }));
   auto curvature = NewOutputArray("Curvature", 3, count);
+  // An O-grid is closed where its first and last layer are at the same places, as doubles turn out.
+  const auto meet = [&](vtkIdType first, vtkIdType last)
+  {
+    double scratch[6];
+    const Vector3d a = Eigen::Map<const Vector3d>(
+      positions.Read(static_cast<std::size_t>(first), 1, scratch));
+    const Vector3d b = Eigen::Map<const Vector3d>(
+      positions.Read(static_cast<std::size_t>(last), 1, scratch + 3));
+    return (a - b).norm() <= 1e-6 * std::min(a.norm(), b.norm());
+  };
   vtkSMPTools::For(0, count, 1024,
     [&](vtkIdType begin, vtkIdType end)
     {
@@ -280,9 +300,18 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
         for (int axis = 0; axis < 3 && !u.isZero(0.0); ++axis)
         {
           const vtkIdType index = i / strides[axis] % dimensions[axis];
-          const vtkIdType before = index > 0 ? i - strides[axis] : i;
-          const vtkIdType after = index + 1 < dimensions[axis] ? i + strides[axis] : i;
-          if (before < after)
+          const vtkIdType before = index > 0 && isThere(i - strides[axis]) ? i - strides[axis] : i;
+          const vtkIdType after =
+            index + 1 < dimensions[axis] && isThere(i + strides[axis]) ? i + strides[axis] : i;
+          const vtkIdType first = i - index * strides[axis];
+          const vtkIdType last = first + (dimensions[axis] - 1) * strides[axis];
+          const bool ends = index == 0 || index + 1 == dimensions[axis];
+          if (ends && dimensions[axis] > 3 && isThere(first) && isThere(last) &&
+            isThere(first + strides[axis]) && isThere(last - strides[axis]) && meet(first, last))
+          {
+            getDifferences(last - strides[axis], first + strides[axis], fit);
+          }
+          else if (before < after)
           {
             getDifferences(before, after, fit);
           }

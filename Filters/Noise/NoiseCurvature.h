@@ -10,10 +10,13 @@
 #ifndef NoiseCurvature_h
 #define NoiseCurvature_h
 
+#include "NoiseGhosts.h"
 #include "SteerableNoise.h"
 
 #include "vtkFloatArray.h"
 #include "vtkSmartPointer.h"
+
+#include <vector>
 
 class vtkDataSet;
 
@@ -26,11 +29,16 @@ namespace noise
  * `cellSize`: in world units, of the noise; curvatures are summed in steps of 2^-24 / cellSize.
  */
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
-  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells, double cellSize);
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells,
+  const HiddenSamples& hidden, double cellSize);
 
-/// The same of a structured grid of samples: differences of the neighbours along its axes, as on images.
+/**
+ * The same of a structured grid of samples: differences of the neighbours along its axes, as on images.
+ * `hidden`: one value for each sample, or empty; the grid ends before those that are not 0.
+ */
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions)[3],
-  const steerable::TupleReader<double>& positions, const steerable::TupleReader<float>& vectors);
+  const steerable::TupleReader<double>& positions, const steerable::TupleReader<float>& vectors,
+  const std::vector<unsigned char>& hidden);
 } // namespace noise
 
 #endif

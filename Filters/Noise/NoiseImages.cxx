@@ -14,9 +14,17 @@
 #include "vtkSMPTools.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+#include <string>
 
 namespace noise
 {
@@ -56,19 +64,121 @@ void Interpolate(ArrayList& list, const int coarse[3], const int fine[3], Place&
         for (int i = 0; i < fine[0]; ++i)
         {
           const Between x = Locate(place(0, i), coarse[0]);
+          int used = 0;
           for (int corner = 0; corner < 8; ++corner)
           {
+            const double weight = (corner & 1 ? x.Share : 1.0 - x.Share) *
+              (corner & 2 ? y.Share : 1.0 - y.Share) * (corner & 4 ? z.Share : 1.0 - z.Share);
+            if (!(weight > 0.0))
+            {
+              continue; // 0 times NaN is NaN
+            }
             const vtkIdType cx = corner & 1 ? x.High : x.Low;
             const vtkIdType cy = corner & 2 ? y.High : y.Low;
             const vtkIdType cz = corner & 4 ? z.High : z.Low;
-            ids[corner] = (cz * coarse[1] + cy) * coarse[0] + cx;
-            weights[corner] = (corner & 1 ? x.Share : 1.0 - x.Share) *
-              (corner & 2 ? y.Share : 1.0 - y.Share) * (corner & 4 ? z.Share : 1.0 - z.Share);
+            ids[used] = (cz * coarse[1] + cy) * coarse[0] + cx;
+            weights[used++] = weight;
           }
-          list.Interpolate(8, ids, weights, row * fine[0] + i);
+          list.Interpolate(used, ids, weights, row * fine[0] + i);
         }
       }
     });
+}
+
+/**
+ * Flags and labels on points: of the nearest, and of vtkGhostType what holds for the samples in between. Next
+ * to a hidden one they are hidden; between two of another piece they are duplicates.
+ */
+template <typename Place>
+void CopyLabels(vtkPointData* from, vtkPointData* to, const int coarse[3], const int fine[3],
+  Place&& place)
+{
+  for (int n = 0; n < to->GetNumberOfArrays(); ++n)
+  {
+    vtkDataArray* labels = to->GetArray(n);
+    vtkDataArray* source = labels ? from->GetArray(labels->GetName()) : nullptr;
+    if (!source || source->GetNumberOfComponents() != 1 || source->GetDataType() == VTK_FLOAT ||
+      source->GetDataType() == VTK_DOUBLE)
+    {
+      continue;
+    }
+    auto* ghosts = vtkUnsignedCharArray::SafeDownCast(source);
+    const bool isGhost = ghosts &&
+      std::string(vtkDataSetAttributes::GhostArrayName()) ==
+        (labels->GetName() ? labels->GetName() : "");
+    vtkSMPTools::For(0, static_cast<vtkIdType>(fine[1]) * fine[2],
+      [&](vtkIdType begin, vtkIdType end)
+      {
+        for (vtkIdType row = begin; row < end; ++row)
+        {
+          const int jk[2] = { static_cast<int>(row % fine[1]), static_cast<int>(row / fine[1]) };
+          const Between y = Locate(place(1, jk[0]), coarse[1]);
+          const Between z = Locate(place(2, jk[1]), coarse[2]);
+          for (int i = 0; i < fine[0]; ++i)
+          {
+            const Between x = Locate(place(0, i), coarse[0]);
+            const auto at = [&](bool a, bool b, bool c)
+            {
+              return ((c ? z.High : z.Low) * coarse[1] + (b ? y.High : y.Low)) * coarse[0] +
+                (a ? x.High : x.Low);
+            };
+            const vtkIdType out = row * fine[0] + i;
+            if (!isGhost)
+            {
+              labels->SetTuple(out, at(x.Share > 0.5, y.Share > 0.5, z.Share > 0.5), source);
+              continue;
+            }
+            unsigned char any = 0;
+            unsigned char all = 0xff;
+            for (int corner = 0; corner < 8; ++corner)
+            {
+              const bool a = corner & 1 && x.Share > 0.0;
+              const bool b = corner & 2 && y.Share > 0.0;
+              const bool c = corner & 4 && z.Share > 0.0;
+              const unsigned char ghost = ghosts->GetValue(at(a, b, c));
+              any |= ghost;
+              all &= ghost;
+            }
+            const unsigned char hidden = vtkDataSetAttributes::HIDDENPOINT;
+            labels->SetComponent(out, 0, (any & hidden) | (all & ~hidden));
+          }
+        }
+      });
+  }
+}
+
+/// Asks for the memory that the output takes, and gives it back; throws if there is none.
+void CheckMemory(vtkImageData* input, const int fine[3], int factor)
+{
+  const double points = double(fine[0]) * fine[1] * fine[2];
+  double perPoint = sizeof(float); // the noise
+  for (vtkDataSetAttributes* attributes : { static_cast<vtkDataSetAttributes*>(
+                                              input->GetPointData()),
+         static_cast<vtkDataSetAttributes*>(input->GetCellData()) })
+  {
+    for (int n = 0; n < attributes->GetNumberOfArrays(); ++n)
+    {
+      if (vtkDataArray* array = attributes->GetArray(n))
+      {
+        perPoint += double(array->GetDataTypeSize()) * array->GetNumberOfComponents();
+      }
+    }
+  }
+  const double bytes = points * perPoint;
+  bool fits = bytes < double(std::numeric_limits<std::ptrdiff_t>::max());
+  if (fits)
+  {
+    const std::unique_ptr<char[]> room(new (std::nothrow) char[static_cast<std::size_t>(bytes)]);
+    fits = room != nullptr;
+  }
+  if (!fits)
+  {
+    std::ostringstream message;
+    message << "Magnification " << factor << " makes " << fine[0] << " x " << fine[1] << " x "
+            << fine[2] << " samples, " << std::ceil(bytes / 1e9)
+            << " GB with all arrays, more than there is. Lower Magnification.";
+    throw std::runtime_error(message.str());
+  }
 }
 } // namespace
 
@@ -125,6 +235,8 @@ void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo,
     fineDims[axis] = std::max(extent[2 * axis + 1] - extent[2 * axis] + 1, 0);
     coarseDims[axis] = coarseExtent[2 * axis + 1] - coarseExtent[2 * axis] + 1;
   }
+  // Before anything is counted in ids of points.
+  CheckMemory(input, fineDims, factor);
   output->SetExtent(extent);
   output->SetSpacing(spacing);
   output->SetOrigin(input->GetOrigin());
@@ -144,6 +256,7 @@ void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo,
     ArrayList list;
     list.AddArrays(output->GetNumberOfPoints(), input->GetPointData(), out, 0.0, false);
     Interpolate(list, coarseDims, fineDims, coarsePlace);
+    CopyLabels(input->GetPointData(), out, coarseDims, fineDims, coarsePlace);
   }
   vtkCellData* out = output->GetCellData();
   if (input->GetNumberOfCells() == 0 || output->GetNumberOfCells() == 0)

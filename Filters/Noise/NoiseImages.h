@@ -17,9 +17,10 @@ void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int fac
 
 /**
  * Fills `output` with that image over the update extent and one sample of the input around it, which
- * curvature looks at. Point arrays are interpolated linearly and cell arrays repeated, except that
+ * curvature looks at. Point arrays are interpolated linearly, samples at the input's places keep their values,
+ * whole numbers of one component are those of the nearest point (vtkGhostType: hidden next to a hidden one), and cell arrays repeated, except that
  * floating-point cell arrays of 2 to 9 components (which may steer the noise) are interpolated between
- * cell centres.
+ * cell centres. Throws std::runtime_error where the memory does not suffice.
  */
 void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo, int factor);
 

@@ -4,11 +4,11 @@
 
 #include "CellSums.h"
 #include "MetricTensor.h"
+#include "NoiseCells.h"
+#include "NoiseCopies.h"
 #include "NoiseCurvature.h"
 #include "NoiseThreads.h"
 
-#include "vtkCell.h"
-#include "vtkCellCenters.h"
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
@@ -23,105 +23,22 @@
 #include "vtkPoints.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkSMPTools.h"
+#include "vtkStaticPointLocator.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace noise
 {
 namespace
 {
-/// VTK's cells square and cube coordinates; past this they overflow.
-constexpr double LargestCoordinate = 1e50;
-
-bool IsUsable(vtkPoints* points, vtkIdType point)
-{
-  double x[3];
-  points->GetPoint(point, x);
-  return std::all_of(x, x + 3, [](double value) { return std::abs(value) <= LargestCoordinate; });
-}
-
-/// Cells whose position is that of one of their simplices, of which VTK may find none.
-bool ConsistsOfSimplices(int cellType)
-{
-  return cellType == VTK_TRIANGLE_STRIP || cellType == VTK_CONVEX_POINT_SET;
-}
-
-/**
- * The cells as VTK can take them when it looks for their centres: it writes out of bounds (VTK 9.2) where a
- * strip or a convex point set is degenerate, and where higher-order cells have no finite coordinates. Such
- * cells become empty.
- */
-vtkSmartPointer<vtkUnstructuredGrid> MendCells(vtkUnstructuredGrid* grid)
-{
-  vtkPoints* points = grid->GetPoints();
-  vtkUnsignedCharArray* types = grid->GetDistinctCellTypesArray();
-  bool mend = false;
-  for (vtkIdType i = 0; !mend && i < types->GetNumberOfValues(); ++i)
-  {
-    mend = ConsistsOfSimplices(types->GetValue(i));
-  }
-  for (vtkIdType i = 0; !mend && i < points->GetNumberOfPoints(); ++i)
-  {
-    mend = !IsUsable(points, i);
-  }
-  if (!mend)
-  {
-    return grid;
-  }
-  auto mended = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  mended->SetPoints(points);
-  mended->Allocate(grid->GetNumberOfCells());
-  vtkNew<vtkIdList> ids;
-  vtkNew<vtkIdList> simplices;
-  vtkNew<vtkPoints> corners;
-  for (vtkIdType cell = 0; cell < grid->GetNumberOfCells(); ++cell)
-  {
-    int type = grid->GetCellType(cell);
-    grid->GetCellPoints(cell, ids);
-    bool keep = std::all_of(
-      ids->begin(), ids->end(), [&](vtkIdType point) { return IsUsable(points, point); });
-    if (keep && ConsistsOfSimplices(type))
-    {
-      simplices->Reset();
-      grid->GetCell(cell)->Triangulate(0, simplices, corners);
-      keep = simplices->GetNumberOfIds() > 0;
-    }
-    if (!keep)
-    {
-      type = VTK_EMPTY_CELL;
-      ids->Reset();
-    }
-    else if (type == VTK_POLYHEDRON)
-    {
-      grid->GetFaceStream(cell, ids);
-    }
-    mended->InsertNextCell(type, ids);
-  }
-  return mended;
-}
-
-/// Stands in for the centre of a cell that VTK cannot find one of.
-void SetMeanOfPoints(vtkUnstructuredGrid* grid, vtkIdType cell, vtkDataArray* centers)
-{
-  vtkNew<vtkIdList> ids;
-  grid->GetCellPoints(cell, ids);
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const vtkIdType point : *ids)
-  {
-    sum += Eigen::Map<const Eigen::Vector3d>(grid->GetPoint(point));
-  }
-  sum /= std::max<double>(1.0, ids->GetNumberOfIds());
-  centers->SetTuple(cell, sum.data());
-}
-
 /// Unit normal of the plane through points (a strip's first three), 0 if there is none.
 Eigen::Vector3d GetNormal(vtkDataSet* dataset, int cellType, vtkIdList* ids)
 {
@@ -155,7 +72,7 @@ bool IsGhostCell(vtkUnsignedCharArray* ghosts, vtkIdType cell)
 {
   return ghosts &&
     (ghosts->GetValue(cell) &
-      (vtkDataSetAttributes::DUPLICATECELL | vtkDataSetAttributes::HIDDENCELL));
+      vtkDataSetAttributes::DUPLICATECELL);
 }
 
 /// Points along each axis of a structured dataset; false for the others.
@@ -208,11 +125,26 @@ int GetSlabAxis(vtkDataSet* dataset)
 } // namespace
 
 Samples::Samples(
-  vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent, int magnification)
+  vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent, int magnification,
+  const Plane& plane)
   : DataSet(dataset)
   , Array(array)
   , Cells(cells)
+  , Hidden(dataset)
 {
+  // Before anything looks at neighbours: what is hidden has no direction.
+  const bool vectors = IsVector(array->GetNumberOfComponents());
+  const auto setSteering = [&](bool flat)
+  {
+    this->Steering = vectors ? MakeVectorReader(array, this->InAxes, flat, plane)
+                             : MakeTensorReader(array, this->InAxes, flat, plane);
+    const std::vector<unsigned char>& hidden = this->Hidden.Get(cells);
+    if (!hidden.empty())
+    {
+      this->Steering = LeaveOut(std::move(this->Steering), vectors ? 3 : 6, hidden);
+    }
+    (vectors ? this->Field.Vectors : this->Field.Tensors) = this->Steering.get();
+  };
   if (auto* image = vtkImageData::SafeDownCast(dataset))
   {
     this->SetGrid(image, wholeExtent);
@@ -222,17 +154,7 @@ Samples::Samples(
   {
     this->SetPoints();
   }
-  const bool flat = this->Dimension == 2;
-  if (IsVector(array->GetNumberOfComponents()))
-  {
-    this->Steering = MakeVectorReader(array, this->InAxes, flat);
-    this->Field.Vectors = this->Steering.get();
-  }
-  else
-  {
-    this->Steering = MakeTensorReader(array, this->InAxes, flat);
-    this->Field.Tensors = this->Steering.get();
-  }
+  setSteering(this->Dimension == 2);
 }
 
 Samples::~Samples() = default;
@@ -309,18 +231,7 @@ void Samples::SetPoints()
   if (this->Cells)
   {
     vtkNew<vtkDoubleArray> centers;
-    centers->SetNumberOfComponents(3);
-    centers->SetNumberOfTuples(this->DataSet->GetNumberOfCells());
-    auto* grid = vtkUnstructuredGrid::SafeDownCast(this->DataSet);
-    vtkSmartPointer<vtkUnstructuredGrid> mended = grid ? MendCells(grid) : nullptr;
-    vtkCellCenters::ComputeCellCenters(grid ? mended.Get() : this->DataSet, centers);
-    for (vtkIdType cell = 0; mended != grid && cell < mended->GetNumberOfCells(); ++cell)
-    {
-      if (mended->GetCellType(cell) == VTK_EMPTY_CELL)
-      {
-        SetMeanOfPoints(grid, cell, centers);
-      }
-    }
+    WithThreads([&] { ComputeCellCenters(this->DataSet, centers); });
     this->CellCenters = centers;
     this->Positions = MakePositionReader(centers);
   }
@@ -362,7 +273,10 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
     : this->DataSet->GetPointData();
   vtkDataArray* own = attributes->GetNormals();
   const auto isSurface = [&](vtkIdType cell)
-  { return dimensions.Get(this->DataSet->GetCellType(cell)) == 2; };
+  {
+    return dimensions.Get(this->DataSet->GetCellType(cell)) == 2 &&
+      (this->Cells || !this->Hidden.HasCell(cell));
+  };
 
   if (this->Cells)
   {
@@ -415,11 +329,13 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
       normals->SetTuple(point, tuple);
     }
   }
+  // 40 degrees: facets of a round surface meet below, edges of a body above.
+  CoincidentPoints(this->DataSet, this->Hidden).Share(normals, DirectionSteps, true, 0.766);
   // A point of a volume is not on a surface.
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; dimensions.Has(3) && cell < this->DataSet->GetNumberOfCells(); ++cell)
   {
-    if (dimensions.Get(this->DataSet->GetCellType(cell)) == 3)
+    if (dimensions.Get(this->DataSet->GetCellType(cell)) == 3 && !this->Hidden.HasCell(cell))
     {
       this->DataSet->GetCellPoints(cell, ids);
       for (const vtkIdType point : *ids)
@@ -498,12 +414,14 @@ void Samples::ComputeCurvature(double featureSize)
       samples = this->Cells ? std::max(samples - 1, 1) : samples;
     }
     this->Curvature =
-      ComputeStreamlineCurvature(dimensions, *this->Positions, *this->Field.Vectors);
+      ComputeStreamlineCurvature(
+      dimensions, *this->Positions, *this->Field.Vectors, this->Hidden.Get(this->Cells));
   }
   else
   {
     this->Curvature =
-      ComputeStreamlineCurvature(this->DataSet, *this->Field.Vectors, this->Cells, featureSize);
+      ComputeStreamlineCurvature(
+      this->DataSet, *this->Field.Vectors, this->Cells, this->Hidden, featureSize);
   }
   this->CurvatureReader = MakeVectorReader(this->Curvature, WorldAxes, false);
   this->Field.Curvature = this->CurvatureReader.get();
@@ -575,44 +493,194 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkI
   }
 }
 
-void AddSampleSpacing(
-  vtkDataSet* dataset, vtkIdType cellsAtMost, double& largest, double& sum, double& count)
+namespace
+{
+using Places = std::vector<Eigen::Vector3d>;
+
+/// Spacing along each axis of samples that fill a cell of this dimension; `whole`: of the cell's sides.
+Eigen::Array3d SpacingOf(const Eigen::Vector3d* places, std::size_t count, int dimension, bool whole)
+{
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    mean += places[i] / static_cast<double>(count);
+  }
+  Eigen::Array3d variance = Eigen::Array3d::Zero();
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    variance += (places[i] - mean).array().square() / static_cast<double>(count);
+  }
+  if (count == static_cast<std::size_t>(dimension) + 1)
+  {
+    // Half a square or a sixth of a cube counts as the whole.
+    return (variance * ((dimension + 1.0) * (dimension + 1.0) / dimension)).sqrt();
+  }
+  // p intervals of h on a side: variance h^2 p (p + 2) / 12.
+  const double intervals = std::pow(static_cast<double>(count), 1.0 / dimension) - 1.0;
+  const Eigen::Array3d spacing =
+    (variance * (12.0 / (intervals * (intervals + 2.0)))).sqrt();
+  return whole ? Eigen::Array3d(spacing * intervals) : spacing;
+}
+
+/// Root mean square along each axis of the edges of a polygon, as of a square with such edges.
+Eigen::Array3d SpacingOfEdges(const Places& corners)
+{
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  for (std::size_t i = 0; i < corners.size(); ++i)
+  {
+    sum += (corners[(i + 1) % corners.size()] - corners[i]).array().square();
+  }
+  return (2.0 * sum / static_cast<double>(corners.size())).sqrt();
+}
+
+/// Distance of a place from the nearest other one along each axis if neighbours are on all sides.
+bool GetNearest(vtkStaticPointLocator* locator, vtkDataSet* dataset, vtkIdType point,
+  vtkIdList* near, Eigen::Array3d& spacing)
+{
+  Eigen::Vector3d place;
+  dataset->GetPoint(point, place.data());
+  if (!place.allFinite())
+  {
+    return false;
+  }
+  locator->FindClosestNPoints(8, place.data(), near);
+  for (const vtkIdType other : *near)
+  {
+    Eigen::Vector3d there;
+    dataset->GetPoint(other, there.data());
+    const double distance = (there - place).norm();
+    if (std::isfinite(distance) && distance > 0.0)
+    {
+      spacing.setConstant(distance);
+      return true;
+    }
+  }
+  return false;
+}
+} // namespace
+
+void SampleSpacing::Add(
+  vtkDataSet* dataset, bool centers, const HiddenSamples& hidden, vtkIdType cellsAtMost)
 {
   if (auto* image = vtkImageData::SafeDownCast(dataset))
   {
     int dims[3];
     image->GetDimensions(dims);
+    const double* direction = image->GetDirectionMatrix()->GetData();
     for (int axis = 0; axis < 3; ++axis)
     {
-      if (dims[axis] > 1)
+      double squares = 0.0;
+      for (int i = 0; i < 3; ++i)
       {
-        largest = std::max(largest, std::abs(image->GetSpacing()[axis]));
+        const double step = direction[3 * axis + i] * image->GetSpacing()[i];
+        squares += dims[i] > 1 ? step * step : 0.0;
+      }
+      // Squares of tiny or huge spacings have no room.
+      const double own = dims[axis] > 1 ? std::abs(image->GetSpacing()[axis]) : 0.0;
+      const bool turned = std::abs(direction[4 * axis]) != 1.0;
+      this->Largest[axis] = std::max(this->Largest[axis], turned ? std::sqrt(squares) : own);
+    }
+    return;
+  }
+  const vtkIdType cells = dataset->GetNumberOfCells();
+  const vtkIdType points = dataset->GetNumberOfPoints();
+  const auto add = [this](const Eigen::Array3d& spacing)
+  {
+    if (spacing.allFinite())
+    {
+      Eigen::Map<Eigen::Array3d>(this->Sum) += spacing;
+      this->Count += 1.0;
+    }
+  };
+  vtkNew<vtkIdList> ids;
+  vtkSmartPointer<vtkStaticPointLocator> locator;
+  const auto addNearest = [&](vtkIdType point)
+  {
+    if (!locator)
+    {
+      locator = vtkSmartPointer<vtkStaticPointLocator>::New();
+      locator->SetDataSet(dataset);
+      locator->BuildLocator();
+    }
+    vtkNew<vtkIdList> near;
+    Eigen::Array3d spacing;
+    if (GetNearest(locator, dataset, point, near, spacing))
+    {
+      add(spacing);
+    }
+  };
+  // Distances of the nearest are looked for at fewer places: each takes a search.
+  constexpr vtkIdType searchesAtMost = 10000;
+  if (cells == 0)
+  {
+    for (vtkIdType point = 0; point < points; point += 1 + points / searchesAtMost)
+    {
+      if (!hidden.HasPoint(point))
+      {
+        addNearest(point);
       }
     }
     return;
   }
-  // A slab's own thickness says nothing about the distance of its samples.
-  const bool slab = GetSlabAxis(dataset) >= 0;
-  const vtkIdType cells = dataset->GetNumberOfCells();
-  const vtkIdType step = 1 + cells / cellsAtMost;
+  const CellDimensions dimensions(dataset);
+  // A slab's own thickness says nothing about the distance of its samples: one side of it does.
+  const int slab = GetSlabAxis(dataset);
+  int dims[3] = { 1, 1, 1 };
+  GetDimensions(dataset, dims);
+  const vtkIdType strides[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };
   vtkUnsignedCharArray* ghosts = dataset->GetCellGhostArray();
+  const vtkIdType step = 1 + cells / cellsAtMost;
+  vtkIdType searches = 0;
+  Places places;
   for (vtkIdType id = 0; id < cells; id += step)
   {
-    if (IsGhostCell(ghosts, id))
+    if (hidden.HasCell(id) || IsGhostCell(ghosts, id))
     {
       continue;
     }
-    double bounds[6];
-    dataset->GetCellBounds(id, bounds);
-    double extent[3] = { bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4] };
-    std::sort(extent, extent + 3);
-    const bool flat = slab || extent[0] <= 1e-6 * extent[2];
-    const double low = flat ? 0.0 : extent[0];
-    const double diagonal = std::sqrt(low * low + extent[1] * extent[1] + extent[2] * extent[2]);
-    if (std::isfinite(diagonal))
+    const int type = dataset->GetCellType(id);
+    const int dimension = slab >= 0 ? 2 : dimensions.Get(type);
+    dataset->GetCellPoints(id, ids);
+    places.clear();
+    for (const vtkIdType point : *ids)
     {
-      sum += diagonal / std::sqrt(flat ? 2.0 : 3.0);
-      count += 1.0;
+      if (slab < 0 || point / strides[slab] % dims[slab] == 0)
+      {
+        places.emplace_back();
+        dataset->GetPoint(point, places.back().data());
+      }
+    }
+    if (dimension == 0)
+    {
+      for (const vtkIdType point : *ids)
+      {
+        searches += 1;
+        if (searches <= searchesAtMost)
+        {
+          addNearest(point);
+        }
+      }
+      continue;
+    }
+    if (places.size() < static_cast<std::size_t>(dimension) + 1)
+    {
+      continue;
+    }
+    const std::size_t part = type == VTK_TRIANGLE_STRIP ? 3 : type == VTK_POLY_LINE ? 2 : 0;
+    if (part > 0 && !centers)
+    {
+      for (std::size_t first = 0; first + part <= places.size(); ++first)
+      {
+        add(SpacingOf(places.data() + first, part, dimension, false));
+      }
+    }
+    else if (type == VTK_POLYGON && places.size() > 4 && !centers)
+    {
+      add(SpacingOfEdges(places));
+    }
+    else
+    {
+      add(SpacingOf(places.data(), places.size(), dimension, centers));
     }
   }
 }

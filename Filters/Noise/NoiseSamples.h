@@ -9,6 +9,7 @@
 #define NoiseSamples_h
 
 #include "NoiseArrays.h"
+#include "NoiseGhosts.h"
 
 #include "vtkSmartPointer.h"
 
@@ -27,10 +28,11 @@ public:
   /**
    * `cells`: the array belongs to the cells. `wholeExtent` tells whether an image is flat where the
    * dataset is a piece of it; null: the dataset is all there is. `magnification`: samples of an image
-   * for each one that its vectors were interpolated from.
+   * for each one that its vectors were interpolated from. `plane`: where two components lie, but flat
+   * images have them along their own axes.
    */
   Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent,
-    int magnification);
+    int magnification, const Plane& plane = WorldPlane);
   ~Samples();
 
   vtkIdType GetNumberOfSamples() const;
@@ -46,6 +48,9 @@ public:
 
   /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.
   void ComputeCurvature(double featureSize);
+
+  /// What neither shows nor changes its neighbours; it gets isotropic noise.
+  const HiddenSamples& GetHidden() const { return this->Hidden; }
 
   /// Noise of the parts [begin, end) into an array of GetNumberOfSamples() values.
   steerable::EvaluationCounts Evaluate(const steerable::SteerableNoise& kernel, std::size_t begin,
@@ -65,6 +70,7 @@ private:
   vtkDataSet* DataSet;
   vtkDataArray* Array;
   bool Cells;
+  HiddenSamples Hidden;
   int Dimension = 3;
   bool IsGrid = false;
   steerable::ImageGrid Grid;
@@ -80,12 +86,24 @@ private:
 };
 
 /**
- * Typical distance of samples: the largest spacing of an image; for other datasets the sum over its
- * cells (ghosts left out; evenly chosen if there are more than `cellsAtMost`) of diagonal / √dimension
- * goes to `sum` and their number to `count`.
+ * How far apart neighbouring samples are along the axes of the world: the largest distance of all images,
+ * and the sum of the distances in cells with their number. They combine by maximum and sum.
  */
-void AddSampleSpacing(
-  vtkDataSet* dataset, vtkIdType cellsAtMost, double& largest, double& sum, double& count);
+struct SampleSpacing
+{
+  double Largest[3] = { 0.0, 0.0, 0.0 };
+  double Sum[3] = { 0.0, 0.0, 0.0 };
+  double Count = 0.0;
+
+  /**
+   * Adds a dataset with samples at its points or, `centers`, one in each of its cells. What a cell tells is
+   * the spacing of a lattice with the same number of samples and the same variance of their places along
+   * each axis; strips and lines count as their triangles and segments, polygons by their edges, and
+   * vertices by the distance of the nearest other place. Ghosts and hidden cells are left out, and of more
+   * than `cellsAtMost` cells an even choice is looked at.
+   */
+  void Add(vtkDataSet* dataset, bool centers, const HiddenSamples& hidden, vtkIdType cellsAtMost);
+};
 } // namespace noise
 
 #endif

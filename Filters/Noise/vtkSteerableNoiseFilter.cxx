@@ -3,11 +3,13 @@
 #include "vtkSteerableNoiseFilter.h"
 
 #include "NoiseArrays.h"
+#include "NoiseGhosts.h"
 #include "NoiseImages.h"
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
 #include "SurfaceFields.h"
 
+#include "vtkBoundingBox.h"
 #include "vtkCellData.h"
 #include "vtkCommunicator.h"
 #include "vtkCompositeDataIterator.h"
@@ -18,16 +20,19 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkMath.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkRectilinearGrid.h"
+#include "vtkSMPThreadLocal.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -46,27 +51,76 @@ struct Block
   bool Cells = false;
 };
 
+/// Length of the longest finite tuple that is not hidden.
+double GetLongest(vtkDataArray* array, const std::vector<unsigned char>& hidden)
+{
+  constexpr vtkIdType chunkSize = 4096;
+  vtkSMPThreadLocal<double> longest(0.0);
+  double all = 0.0;
+  noise::WithThreads(
+    [&]
+    {
+      vtkSMPTools::For(0, array->GetNumberOfTuples(), 16 * chunkSize,
+        [&](vtkIdType begin, vtkIdType end)
+        {
+          double& longestHere = longest.Local();
+          std::vector<double> lengths(chunkSize);
+          for (vtkIdType first = begin; first < end; first += chunkSize)
+          {
+            const vtkIdType count = std::min(chunkSize, end - first);
+            noise::ReadLengths(array, first, count, lengths.data());
+            for (vtkIdType i = 0; i < count; ++i)
+            {
+              if (std::isfinite(lengths[i]) && (hidden.empty() || !hidden[first + i]))
+              {
+                longestHere = std::max(longestHere, lengths[i]);
+              }
+            }
+          }
+        });
+      // In here: each backend has thread-local values of its own, and the sequential one none of these.
+      for (const double here : longest)
+      {
+        all = std::max(all, here);
+      }
+    });
+  return all;
+}
+
 /// What the ranks have to agree on; all of it combines by minimum or sum.
 struct Extremes
 {
   double Bounds[6]; // lower corner, then the negated upper one
   double LongestVector = 0.0;
-  double LargestSpacing = 0.0;
-  double SpacingSum = 0.0;
-  double SpacingCount = 0.0;
+  noise::SampleSpacing Spacing;
 
   Extremes() { std::fill_n(this->Bounds, 6, std::numeric_limits<double>::infinity()); }
 
   /// `magnitude`: the longest vector is asked for. `exact`: the spacing decides more than a warning.
   void Add(const Block& block, bool magnitude, bool exact)
   {
+    const noise::HiddenSamples hidden(block.DataSet);
     if (block.DataSet->GetNumberOfPoints() > 0)
     {
       double bounds[6];
       block.DataSet->GetBounds(bounds);
+      const std::vector<unsigned char>& hiddenPoints = hidden.Get(false);
+      if (!hiddenPoints.empty())
+      {
+        vtkBoundingBox visible;
+        for (vtkIdType point = 0; point < block.DataSet->GetNumberOfPoints(); ++point)
+        {
+          if (!hiddenPoints[point])
+          {
+            visible.AddPoint(block.DataSet->GetPoint(point));
+          }
+        }
+        visible.IsValid() ? visible.GetBounds(bounds) : vtkMath::UninitializeBounds(bounds);
+      }
       for (int axis = 0; axis < 3; ++axis)
       {
-        if (std::isfinite(bounds[2 * axis]) && std::isfinite(bounds[2 * axis + 1]))
+        if (bounds[2 * axis] <= bounds[2 * axis + 1] && std::isfinite(bounds[2 * axis]) &&
+          std::isfinite(bounds[2 * axis + 1]))
         {
           this->Bounds[axis] = std::min(this->Bounds[axis], bounds[2 * axis]);
           this->Bounds[3 + axis] = std::min(this->Bounds[3 + axis], -bounds[2 * axis + 1]);
@@ -75,12 +129,10 @@ struct Extremes
     }
     if (magnitude)
     {
-      double range[2];
-      block.Array->GetFiniteRange(range, -1);
-      this->LongestVector = std::max(this->LongestVector, range[1]);
+      this->LongestVector =
+        std::max(this->LongestVector, GetLongest(block.Array, hidden.Get(block.Cells)));
     }
-    noise::AddSampleSpacing(block.DataSet, exact ? 1000000 : 10000, this->LargestSpacing,
-      this->SpacingSum, this->SpacingCount);
+    this->Spacing.Add(block.DataSet, block.Cells, hidden, exact ? 1000000 : 10000);
   }
 
   void Reduce(vtkMultiProcessController* controller)
@@ -89,43 +141,106 @@ struct Extremes
     {
       return;
     }
-    double least[8];
+    double least[10];
     std::copy_n(this->Bounds, 6, least);
     least[6] = -this->LongestVector;
-    least[7] = -this->LargestSpacing;
-    double all[8];
-    controller->AllReduce(least, all, 8, vtkCommunicator::MIN_OP);
+    std::transform(this->Spacing.Largest, this->Spacing.Largest + 3, least + 7, std::negate<>());
+    double all[10];
+    controller->AllReduce(least, all, 10, vtkCommunicator::MIN_OP);
     std::copy_n(all, 6, this->Bounds);
     this->LongestVector = -all[6];
-    this->LargestSpacing = -all[7];
-    const double sums[2] = { this->SpacingSum, this->SpacingCount };
-    double total[2];
-    controller->AllReduce(sums, total, 2, vtkCommunicator::SUM_OP);
-    this->SpacingSum = total[0];
-    this->SpacingCount = total[1];
+    std::transform(all + 7, all + 10, this->Spacing.Largest, std::negate<>());
+    double sums[4];
+    std::copy_n(this->Spacing.Sum, 3, sums);
+    sums[3] = this->Spacing.Count;
+    double total[4];
+    controller->AllReduce(sums, total, 4, vtkCommunicator::SUM_OP);
+    std::copy_n(total, 3, this->Spacing.Sum);
+    this->Spacing.Count = total[3];
   }
 
-  double GetDiagonal() const
+  /// Side of the bounds along an axis, 0 if there is none.
+  double GetSide(int axis) const
   {
-    double length[3];
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      length[axis] = -this->Bounds[3 + axis] - this->Bounds[axis];
-      length[axis] = std::isfinite(length[axis]) ? length[axis] : 0.0;
-    }
-    return std::hypot(length[0], length[1], length[2]);
+    const double side = -this->Bounds[3 + axis] - this->Bounds[axis];
+    return std::isfinite(side) ? side : 0.0;
   }
 
-  /// The mean has three digits, so that the order of its sum over ranks does not show.
+  /**
+   * The largest size of which a picture of the whole shows enough: an eighth of the second longest side of
+   * the bounds. The longest may have another unit (metres of depth beside degrees), and one of less than
+   * a ten-thousandth of it is not seen.
+   */
+  double GetLargestSize() const
+  {
+    double sides[3] = { this->GetSide(0), this->GetSide(1), this->GetSide(2) };
+    std::sort(sides, sides + 3, std::greater<>());
+    return 0.125 * (sides[1] > 1e-4 * sides[0] ? sides[1] : sides[0]);
+  }
+
+  /**
+   * The largest of the distances of neighbours along the axes, of those along which 4 fit into the largest
+   * size or that are at most twice the smallest. Means have three digits, so that the order of their sums
+   * over ranks does not show.
+   */
   double GetSampleSpacing() const
   {
-    double mean = this->SpacingCount > 0.0 ? this->SpacingSum / this->SpacingCount : 0.0;
-    if (mean > 0.0)
+    double spacing[3];
+    double smallest = std::numeric_limits<double>::infinity();
+    const double longest = std::max({ this->GetSide(0), this->GetSide(1), this->GetSide(2) });
+    for (int axis = 0; axis < 3; ++axis)
     {
-      const double unit = std::pow(10.0, std::floor(std::log10(mean)) - 2.0);
-      mean = std::round(mean / unit) * unit;
+      double mean = this->Spacing.Count > 0.0 ? this->Spacing.Sum[axis] / this->Spacing.Count : 0.0;
+      if (mean > 0.0)
+      {
+        const double unit = std::pow(10.0, std::floor(std::log10(mean)) - 2.0);
+        mean = std::round(mean / unit) * unit;
+      }
+      spacing[axis] = std::max(mean, this->Spacing.Largest[axis]);
+      if (spacing[axis] > 0.0 && this->GetSide(axis) > 1e-4 * longest)
+      {
+        smallest = std::min(smallest, spacing[axis]);
+      }
     }
-    return std::max(mean, this->LargestSpacing);
+    const double most = std::max(0.25 * this->GetLargestSize(), 2.0 * smallest);
+    double largest = 0.0;
+    for (const double here : spacing)
+    {
+      largest = here <= most ? std::max(largest, here) : largest;
+    }
+    return largest;
+  }
+
+  /// The coordinate plane that all data lie in; x and y if there is none.
+  noise::Plane GetPlane() const
+  {
+    const double longest = std::max({ this->GetSide(0), this->GetSide(1), this->GetSide(2) });
+    const auto flat = [&](int axis) { return this->GetSide(axis) <= 1e-6 * longest; };
+    if (flat(2) || flat(0) == flat(1))
+    {
+      return noise::WorldPlane;
+    }
+    return { flat(0) ? 1 : 0, 2 };
+  }
+
+  /// The smallest FeatureSize that the samples carry; 0 if they are nowhere.
+  double GetSmallestSize() const { return Snap(4.0 * this->GetSampleSpacing()); }
+
+  double GetAutomaticSize() const
+  {
+    const double diagonal = std::hypot(this->GetSide(0), this->GetSide(1), this->GetSide(2));
+    return std::max(
+      Snap(std::min(0.01 * diagonal, this->GetLargestSize())), this->GetSmallestSize());
+  }
+
+private:
+  /**
+   * The nearest power of the fourth root of 2: sizes that differ a little, between the steps of a series or
+   * the places of a slice, become the same, and streaks stay where they are.
+   */
+  static double Snap(double size)
+  {
+    return size > 0.0 ? std::exp2(std::round(4.0 * std::log2(size)) / 4.0) : 0.0;
   }
 };
 
@@ -135,11 +250,32 @@ vtkDataSetAttributes* GetAttributes(vtkDataSet* dataset, bool cells)
                : dataset->GetPointData();
 }
 
-/// Degenerate samples are counted by the kernel with the ghosts; these are the ghosts among them.
-vtkIdType CountDegenerateGhosts(const Block& block)
+/// Data without time, or of one time, which is `only`.
+bool IsSteady(vtkInformation* info, double& only)
 {
-  auto* ghosts = vtkUnsignedCharArray::SafeDownCast(
-    GetAttributes(block.DataSet, block.Cells)->GetArray(vtkDataSetAttributes::GhostArrayName()));
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  if (info->Has(SDDP::TIME_STEPS()) && info->Length(SDDP::TIME_STEPS()) > 0)
+  {
+    only = info->Get(SDDP::TIME_STEPS(), 0);
+    return info->Length(SDDP::TIME_STEPS()) == 1;
+  }
+  if (info->Has(SDDP::TIME_RANGE()))
+  {
+    only = info->Get(SDDP::TIME_RANGE(), 0);
+    return only == info->Get(SDDP::TIME_RANGE(), 1);
+  }
+  return true;
+}
+
+constexpr const char* HyperTreeGridMessage =
+  "A HyperTreeGrid has no points or cells of its own. Apply Hyper Tree Grid To Unstructured Grid "
+  "(vtkHyperTreeGridToUnstructuredGrid) first, or Resample To Image.";
+
+/// Degenerate samples are counted by the kernel with the ghosts; these are the duplicates among them.
+vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned char>& hidden)
+{
+  vtkUnsignedCharArray* ghosts = noise::GetGhosts(
+    GetAttributes(block.DataSet, block.Cells), block.Array->GetNumberOfTuples());
   if (!ghosts || !noise::IsVector(block.Array->GetNumberOfComponents()))
   {
     return 0;
@@ -148,7 +284,7 @@ vtkIdType CountDegenerateGhosts(const Block& block)
   double tuple[9];
   for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
   {
-    if (ghosts->GetValue(i))
+    if (ghosts->GetValue(i) && (hidden.empty() || !hidden[i]))
     {
       block.Array->GetTuple(i, tuple);
       double length = 0.0;
@@ -215,9 +351,9 @@ struct vtkSteerableNoiseFilter::Internals
   }
 
   void Process(const Block& block, const steerable::NoiseParameters& parameters,
-    const int* wholeExtent, int magnification, double progressStart, double progressShare)
+    const noise::Plane& plane, const int* wholeExtent, int magnification, double progressStart, double progressShare)
   {
-    noise::Samples samples(block.DataSet, block.Array, block.Cells, wholeExtent, magnification);
+    noise::Samples samples(block.DataSet, block.Array, block.Cells, wholeExtent, magnification, plane);
     const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
     if (parameters.FollowCurvature)
     {
@@ -226,7 +362,7 @@ struct vtkSteerableNoiseFilter::Internals
     auto result =
       noise::NewOutputArray(this->Self->ResultArrayName, 1, samples.GetNumberOfSamples());
     float* values = result->GetPointer(0);
-    this->Counts += noise::ForEachPart(this->Self, samples.GetNumberOfParts(),
+    steerable::EvaluationCounts counts = noise::ForEachPart(this->Self, samples.GetNumberOfParts(),
       samples.GetNumberOfSamples(), progressStart, progressShare,
       [&](std::size_t begin, std::size_t end)
       { return samples.Evaluate(kernel, begin, end, values); });
@@ -235,11 +371,17 @@ struct vtkSteerableNoiseFilter::Internals
       return; // half an array is none
     }
     this->Samples += samples.GetNumberOfSamples();
-    if (this->Counts.Degenerate > 0)
+    // What is hidden has no direction; with a mask it is stagnant.
+    const std::vector<unsigned char>& hidden = samples.GetHidden().Get(block.Cells);
+    const auto leave = [](std::uint64_t& count, std::uint64_t out)
+    { count -= std::min(count, out); };
+    leave(parameters.MaskThreshold > 0.0 ? counts.Stagnant : counts.Degenerate,
+      hidden.size() - std::count(hidden.begin(), hidden.end(), 0));
+    if (counts.Degenerate > 0)
     {
-      this->Counts.Degenerate -=
-        std::min<std::uint64_t>(this->Counts.Degenerate, CountDegenerateGhosts(block));
+      leave(counts.Degenerate, CountDegenerateGhosts(block, hidden));
     }
+    this->Counts += counts;
 
     vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
     if (this->Self->OutputMetric)
@@ -273,13 +415,14 @@ struct vtkSteerableNoiseFilter::Internals
               << this->BlocksWithout
               << " block(s) have no usable array and were passed on without noise. " << this->Why;
     }
-    const double spacing = extremes.GetSampleSpacing();
+    const double smallest = extremes.GetSmallestSize();
     const double finest =
       parameters.FeatureSize / std::pow(parameters.Lacunarity, parameters.Octaves - 1);
-    if (spacing > 0.0 && finest < 3.999 * spacing)
+    if (finest < 0.999 * smallest)
     {
-      message << "\nThe samples are " << spacing << " apart, too far for noise of FeatureSize "
-              << finest << ". Set FeatureSize to at least " << 4.0 * spacing
+      message << "\nThe samples are " << extremes.GetSampleSpacing()
+              << " apart, too far for noise of FeatureSize " << finest
+              << ". Set FeatureSize to at least " << smallest
               << ", or refine the data (Magnification on images, Resample to Image, Subdivide).";
     }
     // Scripts from before StreakLength set these.
@@ -334,6 +477,8 @@ int vtkSteerableNoiseFilter::FillInputPortInformation(int, vtkInformation* info)
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkDataSet");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  // Taken in order to be refused with a sentence.
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkHyperTreeGrid");
   return 1;
 }
 
@@ -344,10 +489,11 @@ int vtkSteerableNoiseFilter::RequestInformation(
   vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
   using SDDP = vtkStreamingDemandDrivenPipeline;
-  if (this->TimePeriod > 0.0 && !inInfo->Has(SDDP::TIME_STEPS()) &&
-    !inInfo->Has(SDDP::TIME_RANGE()))
+  double only = 0.0;
+  if (this->TimePeriod > 0.0 && IsSteady(inInfo, only))
   {
-    const double range[2] = { 0.0, this->TimePeriod };
+    const double range[2] = { only, only + this->TimePeriod };
+    outInfo->Remove(SDDP::TIME_STEPS());
     outInfo->Set(SDDP::TIME_RANGE(), range, 2);
   }
   else if (!inInfo->Has(SDDP::TIME_RANGE()))
@@ -368,6 +514,11 @@ int vtkSteerableNoiseFilter::RequestUpdateExtent(
   vtkInformation* inInfo = inputVector[0]->GetInformationObject(0);
   vtkInformation* outInfo = outputVector->GetInformationObject(0);
   using SDDP = vtkStreamingDemandDrivenPipeline;
+  double only = 0.0;
+  if (this->TimePeriod > 0.0 && inInfo->Has(SDDP::TIME_STEPS()) && IsSteady(inInfo, only))
+  {
+    inInfo->Set(SDDP::UPDATE_TIME_STEP(), only); // there is no other: nothing is read again
+  }
   const bool magnify = this->Magnification > 1 && vtkImageData::GetData(inInfo);
   // Curvature looks at the next samples, and so does interpolation.
   const int border = (this->FollowCurvature ? 1 : 0) + (magnify ? 1 : 0);
@@ -413,6 +564,12 @@ int vtkSteerableNoiseFilter::RequestData(
     return 0;
   }
 
+  if (input->IsA("vtkHyperTreeGrid"))
+  {
+    vtkErrorMacro(<< HyperTreeGridMessage);
+    return 0;
+  }
+
   Internals internals;
   internals.Self = this;
   std::vector<Block> blocks;
@@ -454,6 +611,11 @@ int vtkSteerableNoiseFilter::RequestData(
       {
         addBlock(dataset, false);
       }
+      else if (copy->IsA("vtkHyperTreeGrid"))
+      {
+        ++internals.BlocksWithout;
+        internals.Why = HyperTreeGridMessage;
+      }
     }
     failed = blocks.empty() && internals.BlocksWithout > 0 && !this->Controller;
   }
@@ -464,7 +626,16 @@ int vtkSteerableNoiseFilter::RequestData(
     hasWhole = image && outInfo->Has(SDDP::WHOLE_EXTENT());
     if (image && this->Magnification > 1)
     {
-      noise::Magnify(image, vtkImageData::SafeDownCast(output), outInfo, this->Magnification);
+      try
+      {
+        noise::Magnify(image, vtkImageData::SafeDownCast(output), outInfo, this->Magnification);
+      }
+      catch (const std::exception& error)
+      {
+        output->Initialize();
+        vtkErrorMacro(<< error.what());
+        return 0;
+      }
     }
     else
     {
@@ -485,10 +656,7 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     extremes.Add(block, needsMagnitude, this->FeatureSize <= 0.0);
   }
-  if (this->FeatureSize <= 0.0 || needsMagnitude)
-  {
-    extremes.Reduce(this->Controller);
-  }
+  extremes.Reduce(this->Controller);
   if (failed)
   {
     vtkErrorMacro(<< internals.Why);
@@ -501,8 +669,7 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   if (this->FeatureSize <= 0.0)
   {
-    const double automatic =
-      std::max(0.01 * extremes.GetDiagonal(), 4.0 * extremes.GetSampleSpacing());
+    const double automatic = extremes.GetAutomaticSize();
     parameters.FeatureSize = automatic > 0.0 ? automatic : 1.0;
   }
   if (needsMagnitude)
@@ -515,7 +682,7 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
     {
-      internals.Process(blocks[i], parameters, hasWhole ? wholeExtent : nullptr,
+      internals.Process(blocks[i], parameters, extremes.GetPlane(), hasWhole ? wholeExtent : nullptr,
         hasWhole ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
         1.0 / blocks.size());
     }

@@ -16,8 +16,11 @@
  *
  * Vectors without a direction (zero, NaN, infinite) get isotropic noise and are counted in one warning.
  * A missing array is an error in a plain dataset; a block of a composite without it is passed on and
- * counted. With FeatureSize 0, or ReferenceMagnitude 0 and StrengthMode Magnitude, the value is
- * agreed on by all ranks of the Controller, which all have to take part.
+ * counted. Automatic values and the plane of two components are agreed on by all ranks of the
+ * Controller, which all have to take part.
+ *
+ * Two components (tensors: four) lie in the coordinate plane that all the data are in (x-y, x-z or y-z), and
+ * along x and y where they are in none; flat images have them along their own axes.
  *
  * @sa
  * vtkPolyDataSubbandNoise
@@ -80,8 +83,9 @@ public:
   ///@{
   /**
    * Side of a lattice cell in world units: the width of a streak is about one of it. 0, the default:
-   * 1/100 of the diagonal of the bounds of all blocks on all ranks, but not finer than 4 sample
-   * spacings. Negative values are clamped to 0.
+   * 1/100 of the diagonal of the bounds of all blocks on all ranks, at most 1/8 of their second longest
+   * side, but not finer than 4 distances of neighbouring samples; rounded to a power of the fourth root
+   * of 2, so that it does not change with every step of a series. Negative values are clamped to 0.
    */
   vtkSetClampMacro(FeatureSize, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(FeatureSize, double);
@@ -214,7 +218,8 @@ public:
   ///@{
   /**
    * Pipeline time of one loop; time / TimePeriod is added to Phase. 0, the default: time does not
-   * matter. With it, an input without time steps becomes animated over the range 0 to TimePeriod.
+   * matter. With it, an input without time steps becomes animated over the range 0 to TimePeriod, and one
+   * with a single time over one TimePeriod from there.
    */
   vtkSetClampMacro(TimePeriod, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimePeriod, double);

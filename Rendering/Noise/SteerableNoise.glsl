@@ -282,9 +282,8 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
   float sag = 0.5 * d.x / kr;
   int begin = int(ceil(f.x - extent + min(sag, 0.0)));
   int end = int(floor(f.x + extent + max(sag, 0.0)));
-  // Second order of the bend within a section, which the sections leave out, and jitter.
-  float spread = (c.x * c.x / br + m.x * m.x / er) / (u.x * u.x);
-  float slack = min(0.5 * length(d) * spread, 1.0) + 2.0 * jitter;
+  float thickness = c.x * c.x / br + m.x * m.x / er; // of a straight streak along x, squared
+  float bendLength = length(d);
 
   float noise = 0.0;
   float variance = 0.0;
@@ -292,9 +291,12 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
   {
     float x = float(i) - f.x;
     // The middle of the section: where the streamline's parabola s u + s^2 d / 2 has this x.
-    float s0 = x / u.x;
-    s0 = (x - 0.5 * s0 * s0 * d.x) / u.x;
-    s0 = clamp((x - 0.5 * s0 * s0 * d.x) / u.x, -farthest, farthest);
+    float slope = sqrt(max(u.x * u.x + 2.0 * x * d.x, 0.0));
+    float s0 = clamp(2.0 * x / (u.x + (u.x < 0.0 ? -slope : slope)), -farthest, farthest);
+    // What the second order leaves out, with jitter: much only where the parabola turns across x.
+    slope = max(abs(u.x + s0 * d.x), 0.1);
+    float slack = min(0.5 * bendLength * thickness / (slope * slope * slope), 4.0) +
+      jitter * (1.0 + 1.0 / slope);
     vec3 middle = s0 * u + 0.5 * s0 * s0 * d;
     float dx = x - middle.x;
     // q there to second order: k (s0 + u.v)^2 + b (C.v)^2 + e (M.v)^2 with axes that turn with the parabola.
@@ -312,12 +314,15 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
     float inverseZ = 1.0 / zz;
     float sy = 1.0 / (yy - yz * yz * inverseZ);
     float ym = -(y1 - z1 * yz * inverseZ) * sy;
-    float left = 1.0 - (q0 - z1 * z1 * inverseZ - ym * ym / sy);
-    float halfY = sqrt(max(left, 0.0) * sy) + slack;
-    if (left < -4.0 * slack)
+    // What is left of q for the rows, and as much more as the slack may turn out to be.
+    float left = 1.0 + min(4.0 * slack, 2.0) - (q0 - z1 * z1 * inverseZ - ym * ym / sy);
+    if (left <= 0.0)
     {
       continue;
     }
+    float halfY = sqrt(min(left, 1.0) * sy) + slack;
+    float slackZ =
+      slack + jitter * (abs(yz) + abs(kr * u.x * u.z + br * C.x * C.z + er * M.x * M.z)) * inverseZ;
     float toY = f.y + middle.y;
     float toZ = f.z + middle.z;
     int beginY = int(ceil(toY + ym - halfY));
@@ -328,12 +333,13 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
       float y = float(j) - f.y;
       float dy = y - middle.y;
       float zm = -(z1 + yz * dy) * inverseZ;
-      float leftZ = 1.0 - (q0 + (2.0 * y1 + yy * dy) * dy - zm * zm * zz);
-      if (leftZ < -4.0 * slack)
+      float leftZ =
+        1.0 + min(4.0 * slack, 2.0) - (q0 + (2.0 * y1 + yy * dy) * dy - zm * zm * zz);
+      if (leftZ <= 0.0)
       {
         continue;
       }
-      float halfZ = sqrt(max(leftZ, 0.0) * inverseZ) + slack;
+      float halfZ = sqrt(min(leftZ, 1.0) * inverseZ) + slackZ;
       int beginZ = int(ceil(toZ + zm - halfZ));
       int endZ = int(floor(toZ + zm + halfZ));
       uint hashXY = hashX ^ HashOneAxis(corner.y + uint(j), first.y, last.y);

@@ -4,7 +4,7 @@
 // From the noise of a fragment to its colour. Colours are those of the surface before lighting, so that light,
 // specular highlights and edges stay what they are; the colour map stays readable under Lightness.
 
-uniform int noiseColorMode;        // vtkSteerableNoiseMapper::ColorModeType
+uniform int noiseColorMode;        // vtkSteerableNoiseMapper::NoiseColorModeType
 uniform float noiseIntensity;
 uniform float noiseContrast;
 uniform vec4 noiseMaskColor;       // of what shows no noise; alpha 0: the surface's own

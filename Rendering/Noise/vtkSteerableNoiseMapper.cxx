@@ -315,7 +315,7 @@ protected:
     const auto* found = internals.Find(data);
     if (internals.Variant.PerCell)
     {
-      this->AppendCells(block, data, found, actor);
+      this->AppendCells(data, found, actor);
       return;
     }
     const noise::SurfaceFields fields = found ? found->Fields : noise::SurfaceFields();
@@ -354,13 +354,14 @@ private:
   }
 
   /// Three texels for each primitive: what steers it, then normal and curvature or the rest of a tensor.
-  void AppendCells(BlockData* block, vtkPolyData* data,
+  void AppendCells(vtkPolyData* data,
     const vtkSteerableNoiseMapper::Internals::Block* found, vtkActor* actor)
   {
     vtkCellArray* cells[4] = { data->GetVerts(), data->GetLines(), data->GetPolys(),
       data->GetStrips() };
-    block->CellCellMap->Update(
-      cells, actor->GetProperty()->GetRepresentation(), data->GetPoints());
+    // The block's own map may know how many primitives there are, but not whose they are.
+    vtkNew<vtkOpenGLCellToVTKCellMap> map;
+    map->Update(cells, actor->GetProperty()->GetRepresentation(), data->GetPoints());
     const auto append = [this](vtkFloatArray* array, vtkIdType cell, int component)
     {
       for (int c = 0; c < 4; ++c)
@@ -370,9 +371,9 @@ private:
             : 0.0f);
       }
     };
-    for (std::size_t i = 0; i < static_cast<std::size_t>(block->CellCellMap->GetSize()); ++i)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(map->GetSize()); ++i)
     {
-      const vtkIdType cell = block->CellCellMap->GetValue(i);
+      const vtkIdType cell = map->GetValue(i);
       const noise::SurfaceFields fields =
         found && found->PerCell ? found->Fields : noise::SurfaceFields();
       const bool tensors = fields.Steering && fields.Steering->GetNumberOfComponents() == 6;
@@ -454,10 +455,8 @@ void vtkSteerableNoiseMapper::FindFields()
   Internals& internals = *this->Internal;
   vtkDataObject* input = this->GetInputDataObject(0, 0);
   std::map<vtkPolyData*, Internals::Block> blocks;
-  vtkBoundingBox bounds;
   noise::ShaderVariant variant;
   internals.AnyNoise = false;
-  internals.OwnLongest = 0.0;
   const vtkMTimeType chosen = std::max(
     this->GetInputArrayInformation(0)->GetMTime(), internals.PerCellTime.GetMTime());
   std::string why;
@@ -468,7 +467,6 @@ void vtkSteerableNoiseMapper::FindFields()
       {
         return;
       }
-      bounds.AddBounds(data->GetBounds());
       bool cells = false;
       std::string whyNot;
       vtkDataArray* array =
@@ -500,9 +498,11 @@ void vtkSteerableNoiseMapper::FindFields()
       variant.Tensors = tensors;
       variant.PerCell = perCell;
       internals.AnyNoise = true;
-      internals.OwnLongest = std::max(internals.OwnLongest, block.Fields.Longest);
     });
   internals.Blocks.swap(blocks);
+  vtkBoundingBox bounds;
+  internals.OwnLongest = 0.0;
+  this->AddExtremes(input, bounds, internals.OwnLongest);
   internals.OwnDiagonal = bounds.IsValid() ? bounds.GetDiagonalLength() : 0.0;
   if (variant.Tensors != internals.Variant.Tensors || variant.PerCell != internals.Variant.PerCell)
   {
@@ -588,7 +588,7 @@ STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthBy,
 STEERABLENOISE_OPTION(Basis, int, Model.Surflet,
   Basis == STREAKS ? steerable::Basis::Streaks : steerable::Basis::Gradient, VARIANT)
 // The first decides on which pass the geometry is drawn, the second on what is uploaded.
-STEERABLENOISE_OPTION(ColorMode, int, ColorMode, Clamp<int>(ColorMode, MULTIPLY, OPACITY),
+STEERABLENOISE_OPTION(NoiseColorMode, int, ColorMode, Clamp<int>(NoiseColorMode, MULTIPLY, OPACITY),
   this->Modified())
 STEERABLENOISE_OPTION(VectorsPerCell, bool, VectorsPerCell, VectorsPerCell,
   this->Internal->PerCellTime.Modified();
@@ -618,6 +618,29 @@ void vtkSteerableNoiseMapper::SetMaskColor(double red, double green, double blue
 void vtkSteerableNoiseMapper::GetMaskColor(double color[3])
 {
   std::copy_n(this->Internal->Options.MaskColor.begin(), 3, color);
+}
+
+void vtkSteerableNoiseMapper::AddExtremes(
+  vtkDataObject* input, vtkBoundingBox& bounds, double& longest)
+{
+  ForEachPolyData(input,
+    [&](vtkPolyData* data)
+    {
+      if (data->GetNumberOfPoints() == 0)
+      {
+        return;
+      }
+      bounds.AddBounds(data->GetBounds());
+      bool cells = false;
+      std::string why;
+      if (vtkDataArray* array =
+            noise::FindSteeringArray(data, this->GetInputArrayInformation(0), cells, why))
+      {
+        double range[2];
+        array->GetFiniteRange(range, -1); // as the filter has it
+        longest = std::max(longest, range[1]);
+      }
+    });
 }
 
 void vtkSteerableNoiseMapper::SetSharedExtremes(double diagonal, double longest)
@@ -722,7 +745,7 @@ void vtkSteerableNoiseMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Gain: " << this->GetGain() << "\n"
      << indent << "Seed: " << this->GetSeed() << "\n"
      << indent << "VectorsPerCell: " << this->GetVectorsPerCell() << "\n"
-     << indent << "ColorMode: " << this->GetColorMode() << "\n"
+     << indent << "NoiseColorMode: " << this->GetNoiseColorMode() << "\n"
      << indent << "NoiseIntensity: " << this->GetNoiseIntensity() << "\n"
      << indent << "NoiseContrast: " << this->GetNoiseContrast() << "\n"
      << indent << "UseMaskColor: " << this->GetUseMaskColor() << "\n";

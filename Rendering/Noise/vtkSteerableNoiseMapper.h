@@ -41,6 +41,7 @@ using vtkSteerableNoiseMapperSuperclass = vtkCompositePolyDataMapper2;
 
 #include <memory> // For std::unique_ptr
 
+class vtkBoundingBox;
 class vtkSteerableNoiseFilter;
 
 class STEERABLENOISERENDERING_EXPORT vtkSteerableNoiseMapper
@@ -56,7 +57,7 @@ public:
     PIXELS = 0,
     WORLD = 1
   };
-  enum ColorModeType
+  enum NoiseColorModeType
   {
     MULTIPLY = 0,
     BLEND = 1,
@@ -218,8 +219,8 @@ public:
    * (Surface LIC's meaning); LIGHTNESS: changes the lightness only, so that a colour map stays readable;
    * OPACITY: dark places become transparent.
    */
-  void SetColorMode(int mode);
-  int GetColorMode();
+  void SetNoiseColorMode(int mode);
+  int GetNoiseColorMode();
   ///@}
 
   ///@{
@@ -270,6 +271,9 @@ public:
    * the default: the mapper's own input is all there is.
    */
   void SetSharedExtremes(double diagonal, double longest);
+
+  /// Bounds of a dataset or composite, and the length of the longest vector that would steer it.
+  void AddExtremes(vtkDataObject* data, vtkBoundingBox& bounds, double& longest);
 
   void Render(vtkRenderer* renderer, vtkActor* actor) override;
 

@@ -6,9 +6,11 @@
 #include "vtkAlgorithmOutput.h"
 #include "vtkArrayCalculator.h"
 #include "vtkCallbackCommand.h"
+#include "vtkHyperTreeGrid.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkMatrix3x3.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkSMPTools.h"
 #include "vtkSOADataArrayTemplate.h"
@@ -325,10 +327,10 @@ TEST(SteerableNoiseFilter, FeatureSizeZeroIsAHundredthOfTheDiagonalOrFourSpacing
   vtkNew<vtkSteerableNoiseFilter> filter;
   filter->SetInputData(MakeImage(400, 300, 1, 0.1));
   filter->Update();
-  EXPECT_NEAR(filter->GetResolvedFeatureSize(), 0.01 * std::hypot(39.9, 29.9), 1e-9);
+  EXPECT_NEAR(filter->GetResolvedFeatureSize(), 0.5, 1e-9); // 0.499, on the ladder of 2^(1/4)
   filter->SetInputData(MakeImage(40, 30, 1, 0.1));
   filter->Update();
-  EXPECT_NEAR(filter->GetResolvedFeatureSize(), 0.4, 1e-9);
+  EXPECT_NEAR(filter->GetResolvedFeatureSize(), std::exp2(-1.25), 1e-9); // 0.4
 }
 
 TEST(SteerableNoiseFilter, VectorsWithoutDirectionGiveOneCountedWarning)
@@ -504,6 +506,73 @@ TEST(SteerableNoiseFilter, TimeMovesASteadyFlow)
   EXPECT_EQ(phase, quarter);
 }
 
+TEST(SteerableNoiseFilter, ASingleTimeIsSteady)
+{
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  vtkNew<vtkTrivialProducer> producer;
+  producer->SetOutput(MakeImage(40, 30, 1));
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputConnection(producer->GetOutputPort());
+  filter->SetFeatureSize(5.0);
+  filter->SetTimePeriod(2.0);
+  const auto offer = [&](const std::vector<double>& steps, const std::vector<double>& range)
+  {
+    producer->UpdateInformation();
+    vtkInformation* info = producer->GetOutputInformation(0);
+    info->Remove(SDDP::TIME_STEPS());
+    info->Remove(SDDP::TIME_RANGE());
+    if (!steps.empty())
+    {
+      info->Set(SDDP::TIME_STEPS(), steps.data(), static_cast<int>(steps.size()));
+    }
+    if (!range.empty())
+    {
+      info->Set(SDDP::TIME_RANGE(), range.data(), 2);
+    }
+    filter->Modified();
+    filter->UpdateInformation();
+    vtkInformation* out = filter->GetOutputInformation(0);
+    return std::vector<double>{ out->Get(SDDP::TIME_RANGE())[0], out->Get(SDDP::TIME_RANGE())[1] };
+  };
+  using Range = std::vector<double>;
+  EXPECT_EQ(offer({ 313.0 }, { 313.0, 313.0 }), Range({ 313.0, 315.0 }));
+  EXPECT_FALSE(filter->GetOutputInformation(0)->Has(SDDP::TIME_STEPS()));
+  filter->UpdateTimeStep(313.0);
+  const std::vector<float> start = Values(filter->GetOutputDataObject(0));
+  filter->UpdateTimeStep(313.5);
+  EXPECT_NE(Values(filter->GetOutputDataObject(0)), start);
+  EXPECT_EQ(offer({ 313.0 }, {}), Range({ 313.0, 315.0 }));
+  EXPECT_EQ(offer({}, { 7.0, 7.0 }), Range({ 7.0, 9.0 }));
+  EXPECT_EQ(offer({}, {}), Range({ 0.0, 2.0 }));
+  // Data with times of their own keep them.
+  EXPECT_EQ(offer({ 1.0, 4.0 }, { 1.0, 4.0 }), Range({ 1.0, 4.0 }));
+  EXPECT_EQ(filter->GetOutputInformation(0)->Length(SDDP::TIME_STEPS()), 2);
+}
+
+TEST(SteerableNoiseFilter, HyperTreeGridsAreRefusedWithARemedy)
+{
+  vtkNew<vtkHyperTreeGrid> grid;
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputDataObject(grid);
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("Hyper Tree Grid To Unstructured Grid"), std::string::npos)
+    << messages->Text;
+  // In a composite the others get their noise.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, grid);
+  blocks->SetBlock(1, MakeImage(40, 30, 1));
+  vtkNew<vtkSteerableNoiseFilter> second;
+  messages = Listen(second);
+  second->SetInputDataObject(blocks);
+  second->Update();
+  EXPECT_EQ(messages->Errors, 0);
+  EXPECT_NE(messages->Text.find("HyperTreeGrid"), std::string::npos) << messages->Text;
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(second->GetOutputDataObject(0));
+  EXPECT_EQ(Values(output->GetBlock(1)).size(), 1200u);
+}
+
 TEST(SteerableNoiseFilter, PhaseWrapsAndAnimateClosesTheLoop)
 {
   auto image = MakeImage(40, 30, 1);
@@ -602,6 +671,68 @@ TEST(SteerableNoiseFilter, MagnificationOfAnEmptyImageIsEmpty)
       EXPECT_EQ(extent[2 * axis + 1] - extent[2 * axis], -1) << factor << ", axis " << axis;
     }
   }
+}
+
+TEST(SteerableNoiseFilter, MagnificationKeepsWhatTheInputHolds)
+{
+  auto image = MakeImage(9, 9, 1);
+  auto* flow = image->GetPointData()->GetVectors();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  flow->SetTuple3(40, nan, nan, nan);
+  vtkNew<vtkUnsignedCharArray> ghosts;
+  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  vtkNew<vtkIntArray> labels;
+  labels->SetName("label");
+  for (int i = 0; i < 81; ++i)
+  {
+    ghosts->InsertNextValue(i < 27 ? vtkDataSetAttributes::HIDDENPOINT
+        : i >= 72                  ? vtkDataSetAttributes::DUPLICATEPOINT
+                                   : 0);
+    labels->InsertNextValue(1000 * i);
+  }
+  image->GetPointData()->AddArray(ghosts);
+  image->GetPointData()->AddArray(labels);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(image);
+  filter->SetFeatureSize(4.0);
+  filter->SetMagnification(2);
+  filter->Update();
+  auto* output = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* fine = output->GetPointData()->GetVectors();
+  auto* fineGhosts = output->GetPointData()->GetArray(vtkDataSetAttributes::GhostArrayName());
+  auto* fineLabels = output->GetPointData()->GetArray("label");
+  int missing = 0;
+  for (int y = 0; y < 17; ++y)
+  {
+    for (int x = 0; x < 17; ++x)
+    {
+      const int at = 17 * y + x;
+      missing += std::isnan(fine->GetComponent(at, 0));
+      if (x % 2 == 0 && y % 2 == 0 && at != 17 * 8 + 8)
+      {
+        ASSERT_EQ(fine->GetComponent(at, 1), flow->GetComponent(9 * (y / 2) + x / 2, 1));
+      }
+      EXPECT_EQ(int(fineLabels->GetComponent(at, 0)) % 1000, 0) << "a label is one of the input's";
+      const int ghost = y < 6 ? vtkDataSetAttributes::HIDDENPOINT
+        : y == 16             ? vtkDataSetAttributes::DUPLICATEPOINT
+                              : 0;
+      EXPECT_EQ(fineGhosts->GetComponent(at, 0), ghost) << "row " << y;
+    }
+  }
+  EXPECT_EQ(missing, 9) << "the sample and those between it and its neighbours";
+}
+
+TEST(SteerableNoiseFilter, MagnificationBeyondMemoryIsRefusedBefore)
+{
+  auto image = MakeImage(100, 100, 100);
+  image->SetDimensions(30000, 30000, 1000); // never filled
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(image);
+  filter->SetMagnification(16);
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1) << messages->Text;
+  EXPECT_NE(messages->Text.find("Lower Magnification"), std::string::npos) << messages->Text;
 }
 
 TEST(SteerableNoiseFilter, OutputMetricIsTheMetric)

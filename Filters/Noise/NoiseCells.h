@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Where cells are, whatever their points are (private).
+ */
+#ifndef NoiseCells_h
+#define NoiseCells_h
+
+#include "vtkType.h"
+
+class vtkDataSet;
+class vtkDoubleArray;
+class vtkIdList;
+
+namespace noise
+{
+/**
+ * The type and points of a cell as VTK may be asked where it is. VTK 9.2 reads and writes out of bounds
+ * when it evaluates strips and convex point sets without a simplex that has a volume, and higher-order cells
+ * whose coordinates are not finite or overflow when they are cubed. So a strip arrives as the triangle in its
+ * middle, which is where VTK sees its centre; convex point sets, and cells with such coordinates, as
+ * VTK_EMPTY_CELL with their points.
+ */
+int GetPlainCell(vtkDataSet* dataset, vtkIdType cell, vtkIdList* ids);
+
+/// Centres of all cells, 3 components: VTK's, or the mean of the points of what GetPlainCell replaced.
+void ComputeCellCenters(vtkDataSet* dataset, vtkDoubleArray* centers);
+} // namespace noise
+
+#endif

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "NoiseCopies.h"
+
+#include "vtkDataSet.h"
+#include "vtkFloatArray.h"
+#include "vtkSMPTools.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+namespace noise
+{
+namespace
+{
+// Copies of a point beyond this number stay on their own, so that a heap of points takes no time.
+constexpr std::size_t MostCopies = 256;
+
+using Key = std::pair<std::uint64_t, vtkIdType>;
+} // namespace
+
+CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hidden)
+{
+  const vtkIdType count = dataset->GetNumberOfPoints();
+  double largest = 0.0;
+  for (vtkIdType point = 0; point < count; ++point)
+  {
+    Eigen::Vector3d place;
+    dataset->GetPoint(point, place.data());
+    if (place.allFinite() && !hidden.HasPoint(point))
+    {
+      largest = std::max(largest, place.cwiseAbs().maxCoeff());
+    }
+  }
+  this->Starts.push_back(0);
+  if (!(largest > 1e-300) || largest > 1e300)
+  {
+    return;
+  }
+  const double unit = std::ldexp(1.0, std::ilogb(largest) - 22);
+  const auto hashOf = [&](vtkIdType point, std::uint64_t& hash)
+  {
+    Eigen::Vector3d place;
+    dataset->GetPoint(point, place.data());
+    if (!place.allFinite() || hidden.HasPoint(point))
+    {
+      return false;
+    }
+    hash = 0x9E3779B97F4A7C15u;
+    for (const double value : place)
+    {
+      hash = (hash ^ static_cast<std::uint64_t>(std::llround(value / unit))) * 0xBF58476D1CE4E5B9u;
+      hash ^= hash >> 31;
+    }
+    return true;
+  };
+  // Most points are alone. Eight bits for each tell nearly all of them, and the rest is sorted.
+  std::vector<bool> once(8 * static_cast<std::size_t>(count) + 1, false);
+  std::vector<bool> twice(once.size(), false);
+  std::uint64_t hash;
+  for (vtkIdType point = 0; point < count; ++point)
+  {
+    if (hashOf(point, hash))
+    {
+      const std::size_t bit = hash % once.size();
+      twice[bit] = twice[bit] || once[bit];
+      once[bit] = true;
+    }
+  }
+  std::vector<Key> order;
+  for (vtkIdType point = 0; point < count; ++point)
+  {
+    if (hashOf(point, hash) && twice[hash % once.size()])
+    {
+      order.emplace_back(hash, point);
+    }
+  }
+  vtkSMPTools::Sort(order.begin(), order.end());
+  for (std::size_t begin = 0, end; begin < order.size(); begin = end)
+  {
+    for (end = begin + 1; end < order.size() && order[end].first == order[begin].first;)
+    {
+      ++end;
+    }
+    if (end - begin > 1 && end - begin <= MostCopies)
+    {
+      for (std::size_t n = begin; n < end; ++n)
+      {
+        this->Points.push_back(order[n].second);
+      }
+      this->Starts.push_back(this->Points.size());
+    }
+  }
+}
+
+void CoincidentPoints::Share(
+  vtkFloatArray* values, double stepsPerUnit, bool lines, double leastCosine) const
+{
+  const auto groups = static_cast<vtkIdType>(this->Starts.size()) - 1;
+  vtkSMPTools::For(0, groups, 256,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      std::vector<vtkIdType> left;
+      std::vector<vtkIdType> joined;
+      const auto valueOf = [&](vtkIdType point)
+      { return Eigen::Vector3d(Eigen::Map<Eigen::Vector3f>(values->GetPointer(3 * point)).cast<double>()); };
+      for (vtkIdType group = begin; group < end; ++group)
+      {
+        left.assign(this->Points.begin() + static_cast<std::ptrdiff_t>(this->Starts[group]),
+          this->Points.begin() + static_cast<std::ptrdiff_t>(this->Starts[group + 1]));
+        if (lines)
+        {
+          // Copies without a direction have nothing to share.
+          left.erase(std::remove_if(left.begin(), left.end(),
+                       [&](vtkIdType point)
+                       {
+                         const Eigen::Vector3d v = valueOf(point);
+                         return v.isZero(0.0) || !v.allFinite();
+                       }),
+            left.end());
+        }
+        while (!left.empty())
+        {
+          joined.assign(1, left.back());
+          left.pop_back();
+          for (std::size_t n = 0; n < joined.size(); ++n)
+          {
+            const Eigen::Vector3d from = valueOf(joined[n]).stableNormalized();
+            const auto apart = std::partition(left.begin(), left.end(),
+              [&](vtkIdType point)
+              {
+                return lines &&
+                  !(std::abs(from.dot(valueOf(point).stableNormalized())) >= leastCosine);
+              });
+            joined.insert(joined.end(), apart, left.end());
+            left.erase(apart, left.end());
+          }
+          if (joined.size() < 2)
+          {
+            continue;
+          }
+          Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+          for (const vtkIdType point : joined)
+          {
+            Eigen::Vector3d steps = lines ? valueOf(point).stableNormalized() : valueOf(point);
+            steps = (steps * stepsPerUnit).array().round().matrix();
+            sum += lines && sum.dot(steps) < 0.0 ? Eigen::Vector3d(-steps) : steps;
+          }
+          const Eigen::Vector3d mean =
+            sum / (stepsPerUnit * static_cast<double>(joined.size()));
+          for (const vtkIdType point : joined)
+          {
+            Eigen::Map<Eigen::Vector3f>(values->GetPointer(3 * point)) = mean.cast<float>();
+          }
+        }
+      }
+    });
+}
+} // namespace noise

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @class   vtkSteerableNoiseRepresentation
+ * @brief   ParaView's surface representation with vtkSteerableNoiseMapper
+ *
+ * Hands its properties on to its mappers, which document them; lets all ranks agree on what automatic values come
+ * from; and gives the mappers the time of the view.
+ *
+ * @sa
+ * vtkSteerableNoiseMapper
+ */
+#ifndef vtkSteerableNoiseRepresentation_h
+#define vtkSteerableNoiseRepresentation_h
+
+#include "SteerableNoiseRepresentationsModule.h" // For export macro
+#include "vtkGeometryRepresentationWithFaces.h"
+
+#include <array> // For mappers
+
+class vtkSteerableNoiseMapper;
+
+class STEERABLENOISEREPRESENTATIONS_EXPORT vtkSteerableNoiseRepresentation
+  : public vtkGeometryRepresentationWithFaces
+{
+public:
+  static vtkSteerableNoiseRepresentation* New();
+  vtkTypeMacro(vtkSteerableNoiseRepresentation, vtkGeometryRepresentationWithFaces);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  /// The array that steers; association as in vtkDataObject::FieldAssociations. No name: active vectors.
+  void SelectInputVectors(int, int, int, int association, const char* name);
+
+  ///@{
+  /// See vtkSteerableNoiseMapper.
+  void SetFeaturePixels(double value);
+  void SetFeatureSize(double value);
+  void SetStreakLength(double value);
+  void SetEigenvalueSum(double value);
+  void SetStrength(double value);
+  void SetReferenceMagnitude(double value);
+  void SetMaskThreshold(double value);
+  void SetDensity(double value);
+  void SetPhase(double value);
+  void SetSpeed(double value);
+  void SetTimePeriod(double value);
+  void SetLacunarity(double value);
+  void SetGain(double value);
+  void SetNoiseIntensity(double value);
+  void SetNoiseContrast(double value);
+  void SetFeatureSizeMode(int value);
+  void SetStrengthMode(int value);
+  void SetBasis(int value);
+  void SetOctaves(int value);
+  void SetSeed(int value);
+  void SetColorMode(int value);
+  void SetFollowCurvature(bool value);
+  void SetAnimate(bool value);
+  void SetVectorsPerCell(bool value);
+  void SetUseMaskColor(bool value);
+  void SetMaskColor(double red, double green, double blue);
+  ///@}
+
+  int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* inInfo,
+    vtkInformation* outInfo) override;
+
+protected:
+  vtkSteerableNoiseRepresentation();
+  ~vtkSteerableNoiseRepresentation() override;
+
+  int RequestData(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
+
+private:
+  vtkSteerableNoiseRepresentation(const vtkSteerableNoiseRepresentation&) = delete;
+  void operator=(const vtkSteerableNoiseRepresentation&) = delete;
+
+  /// Of the surface, of its level of detail, and of the back faces of both.
+  std::array<vtkSteerableNoiseMapper*, 4> GetMappers();
+};
+
+#endif

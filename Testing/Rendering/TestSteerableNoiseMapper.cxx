@@ -1,0 +1,797 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "MetricTensor.h"
+#include "SteerableNoiseReference.h"
+#include "SurfaceFields.h"
+
+#include "vtkActor.h"
+#include "vtkCamera.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkHardwareSelector.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkNew.h"
+#include "vtkOutputWindow.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkProperty.h"
+#include "vtkRenderWindow.h"
+#include "vtkRenderer.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
+#include "vtkSmartPointer.h"
+#include "vtkSphereSource.h"
+#include "vtkSteerableNoiseFilter.h"
+#include "vtkSteerableNoiseMapper.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace
+{
+constexpr int Size = 256;
+/// What 24 bits and a shader's floats keep of noise with unit variance.
+constexpr double Tolerance = 2e-3;
+
+/// Counts what VTK complains about.
+class ErrorCounter : public vtkOutputWindow
+{
+public:
+  static ErrorCounter* New();
+  vtkTypeMacro(ErrorCounter, vtkOutputWindow);
+  void DisplayErrorText(const char* text) override { this->Add(text); }
+  void DisplayWarningText(const char* text) override { this->Add(text); }
+  void DisplayGenericWarningText(const char* text) override { this->Add(text); }
+  std::string Text;
+
+private:
+  void Add(const char* text) { this->Text += text; }
+};
+vtkStandardNewMacro(ErrorCounter);
+
+/// Collects messages while it lives.
+class Messages
+{
+public:
+  Messages() { vtkOutputWindow::SetInstance(this->Window); }
+  ~Messages() { vtkOutputWindow::SetInstance(nullptr); }
+  const std::string& Get() const { return this->Window->Text; }
+
+private:
+  vtkNew<ErrorCounter> Window;
+};
+
+/// A scene that looks along -z, so that a pixel is one unit wide.
+class Scene
+{
+public:
+  explicit Scene(vtkDataObject* data, int width = Size)
+  {
+    this->Mapper->SetInputDataObject(data);
+    this->Mapper->ScalarVisibilityOff();
+    this->Mapper->SetFeatureSizeMode(vtkSteerableNoiseMapper::WORLD);
+    this->Actor->SetMapper(this->Mapper);
+    this->Renderer->AddActor(this->Actor);
+    this->Renderer->SetBackground(1.0, 1.0, 1.0);
+    this->Window->SetOffScreenRendering(1);
+    this->Window->SetMultiSamples(0);
+    this->Window->SetSize(width, width);
+    this->Window->AddRenderer(this->Renderer);
+  }
+
+  void LookDown(double x, double y, double unitsHigh)
+  {
+    vtkCamera* camera = this->Renderer->GetActiveCamera();
+    camera->ParallelProjectionOn();
+    camera->SetFocalPoint(x, y, 0.0);
+    camera->SetPosition(x, y, 1000.0);
+    camera->SetViewUp(0.0, 1.0, 0.0);
+    camera->SetParallelScale(0.5 * unitsHigh);
+    this->Renderer->ResetCameraClippingRange();
+  }
+
+  /// RGB of all pixels, rows from below.
+  std::vector<unsigned char> Render()
+  {
+    this->Window->Render();
+    const int* size = this->Window->GetSize();
+    vtkNew<vtkUnsignedCharArray> pixels;
+    this->Window->GetPixelData(0, 0, size[0] - 1, size[1] - 1, 0, pixels);
+    return { pixels->GetPointer(0), pixels->GetPointer(0) + pixels->GetNumberOfValues() };
+  }
+
+  /// Noise of all pixels, NaN where there is none (or the background).
+  std::vector<double> RenderNoise()
+  {
+    this->Mapper->OutputValueOn();
+    const auto pixels = this->Render();
+    std::vector<double> noise(pixels.size() / 3);
+    for (std::size_t i = 0; i < noise.size(); ++i)
+    {
+      const int value = (pixels[3 * i] << 16) + (pixels[3 * i + 1] << 8) + pixels[3 * i + 2];
+      noise[i] = value == 0 || value == 0xFFFFFF ? std::numeric_limits<double>::quiet_NaN()
+                                                 : value / 16777215.0 * 16.0 - 8.0;
+    }
+    return noise;
+  }
+
+  /// Index of the pixel that a place in the scene falls into.
+  std::size_t PixelOf(const double place[3])
+  {
+    this->Renderer->SetWorldPoint(place[0], place[1], place[2], 1.0);
+    this->Renderer->WorldToDisplay();
+    const double* display = this->Renderer->GetDisplayPoint();
+    return static_cast<std::size_t>(std::floor(display[1] + 1e-6)) * this->Window->GetSize()[0] +
+      static_cast<std::size_t>(std::floor(display[0] + 1e-6));
+  }
+
+  vtkNew<vtkSteerableNoiseMapper> Mapper;
+  vtkNew<vtkActor> Actor;
+  vtkNew<vtkRenderer> Renderer;
+  vtkNew<vtkRenderWindow> Window;
+};
+
+/// A wavy sheet of triangles with swirling vectors, tensors of them, and vectors on cells; 12 units apart.
+vtkSmartPointer<vtkPolyData> MakeSheet(const std::array<double, 3>& from, double slope, int side = 20)
+{
+  auto sheet = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkDoubleArray> vectors;
+  vectors->SetName("V");
+  vectors->SetNumberOfComponents(3);
+  vtkNew<vtkDoubleArray> tensors;
+  tensors->SetName("T");
+  tensors->SetNumberOfComponents(6);
+  for (int j = 0; j < side; ++j)
+  {
+    for (int i = 0; i < side; ++i)
+    {
+      const double x = 12.0 * i;
+      const double y = 12.0 * j;
+      points->InsertNextPoint(
+        from[0] + x, from[1] + y, from[2] + slope * x + 3.0 * std::sin(0.02 * y));
+      const double u = 1.0 + std::sin(0.013 * y + 0.4);
+      const double v = std::cos(0.017 * x) - 0.2;
+      const double w = slope * u;
+      vectors->InsertNextTuple3(2.5 * u, 2.5 * v, 2.5 * w);
+      const double t[6] = { u * u + 0.1, v * v + 0.2, w * w, u * v, v * w, u * w };
+      tensors->InsertNextTuple(t);
+    }
+  }
+  vtkNew<vtkCellArray> polys;
+  vtkNew<vtkDoubleArray> cellVectors;
+  cellVectors->SetName("C");
+  cellVectors->SetNumberOfComponents(3);
+  for (int j = 0; j + 1 < side; ++j)
+  {
+    for (int i = 0; i + 1 < side; ++i)
+    {
+      const vtkIdType a = i + side * j;
+      polys->InsertNextCell({ a, a + 1, a + side + 1, a + side });
+      cellVectors->InsertNextTuple(vectors->GetTuple(a));
+    }
+  }
+  sheet->SetPoints(points);
+  sheet->SetPolys(polys);
+  sheet->GetPointData()->SetVectors(vectors);
+  sheet->GetPointData()->AddArray(tensors);
+  sheet->GetCellData()->AddArray(cellVectors);
+  return sheet;
+}
+
+using Setting = std::function<void(vtkSteerableNoiseFilter*)>;
+
+/// Largest difference of the picture's noise at the vertices from the filter's.
+double GetLargestDifference(
+  vtkPolyData* sheet, const char* array, const Setting& set, int* compared = nullptr)
+{
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(sheet);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, array);
+  filter->SetFeatureSize(19.0);
+  set(filter);
+  filter->Update();
+  vtkDataArray* expected = vtkDataSet::SafeDownCast(filter->GetOutput())
+                             ->GetPointData()
+                             ->GetArray(filter->GetResultArrayName());
+
+  Scene scene(sheet);
+  scene.Mapper->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, array);
+  EXPECT_TRUE(scene.Mapper->SetOptionsFrom(filter));
+  scene.Actor->GetProperty()->SetRepresentationToPoints();
+  scene.Actor->GetProperty()->SetPointSize(1.0);
+  const double* center = sheet->GetCenter();
+  vtkCamera* camera = scene.Renderer->GetActiveCamera();
+  camera->ParallelProjectionOn();
+  // Vertices are a whole number of pixels from the centre: now they are in the middle of theirs.
+  camera->SetFocalPoint(center[0] + 0.5, center[1] + 0.5, center[2]);
+  camera->SetPosition(center[0] + 0.5, center[1] + 0.5, center[2] + 1000.0);
+  camera->SetParallelScale(128.0);
+  scene.Renderer->ResetCameraClippingRange();
+  const auto noise = scene.RenderNoise();
+  double largest = 0.0;
+  int count = 0;
+  for (vtkIdType i = 0; i < sheet->GetNumberOfPoints(); ++i)
+  {
+    const double value = noise[scene.PixelOf(sheet->GetPoint(i))];
+    if (!std::isnan(value))
+    {
+      largest = std::max(largest, std::abs(value - expected->GetComponent(i, 0)));
+      ++count;
+    }
+  }
+  if (compared)
+  {
+    *compared = count;
+  }
+  return largest;
+}
+} // namespace
+
+TEST(SteerableNoiseMapper, EqualsTheFilterWithEveryOption)
+{
+  const std::pair<const char*, Setting> settings[] = {
+    { "defaults", [](vtkSteerableNoiseFilter*) {} },
+    { "straight", [](vtkSteerableNoiseFilter* f) { f->FollowCurvatureOff(); } },
+    { "StreakLength 3", [](vtkSteerableNoiseFilter* f) { f->SetStreakLength(3.0); } },
+    { "StreakLength 12", [](vtkSteerableNoiseFilter* f) { f->SetStreakLength(12.0); } },
+    { "EigenvalueSum 5", [](vtkSteerableNoiseFilter* f) { f->SetEigenvalueSum(5.0); } },
+    { "Strength 0.5", [](vtkSteerableNoiseFilter* f) { f->SetStrength(0.5); } },
+    { "Strength 0", [](vtkSteerableNoiseFilter* f) { f->SetStrength(0.0); } },
+    { "Magnitude", [](vtkSteerableNoiseFilter* f)
+      { f->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE); } },
+    { "Magnitude 3", [](vtkSteerableNoiseFilter* f)
+      {
+        f->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE);
+        f->SetReferenceMagnitude(3.0);
+      } },
+    { "Phase", [](vtkSteerableNoiseFilter* f) { f->SetPhase(0.3); } },
+    { "Animate, Speed -2", [](vtkSteerableNoiseFilter* f)
+      {
+        f->AnimateOn();
+        f->SetSpeed(-2.0);
+      } },
+    { "Streaks", [](vtkSteerableNoiseFilter* f) { f->SetBasis(vtkSteerableNoiseFilter::STREAKS); } },
+    { "FeatureSize 60", [](vtkSteerableNoiseFilter* f) { f->SetFeatureSize(60.0); } },
+    { "Streaks, straight", [](vtkSteerableNoiseFilter* f)
+      {
+        f->SetBasis(vtkSteerableNoiseFilter::STREAKS);
+        f->FollowCurvatureOff();
+      } },
+    { "Streaks, Density 1, Phase", [](vtkSteerableNoiseFilter* f)
+      {
+        f->SetBasis(vtkSteerableNoiseFilter::STREAKS);
+        f->SetDensity(1.0);
+        f->SetPhase(0.8);
+      } },
+    { "Octaves", [](vtkSteerableNoiseFilter* f)
+      {
+        f->SetFeatureSize(60.0);
+        f->SetOctaves(3);
+        f->SetLacunarity(1.7);
+        f->SetGain(0.6);
+      } },
+    { "Seed", [](vtkSteerableNoiseFilter* f) { f->SetSeed(-77); } },
+  };
+  const auto sheet = MakeSheet({ 3.0, -5.0, 2.0 }, 0.3);
+  for (const auto& setting : settings)
+  {
+    int compared = 0;
+    EXPECT_LE(GetLargestDifference(sheet, "V", setting.second, &compared), Tolerance)
+      << setting.first;
+    EXPECT_GT(compared, 380) << setting.first;
+  }
+}
+
+TEST(SteerableNoiseMapper, EqualsTheFilterAnywhere)
+{
+  const std::array<double, 3> places[] = { { -120.0, -120.0, 0.0 }, { 448000.0, 5.4e6, 310.0 },
+    { -7.1e6, -3.3e6, -40.0 } };
+  for (const auto& place : places)
+  {
+    for (const double slope : { 0.0, 0.7 })
+    {
+      for (const char* array : { "V", "T" })
+      {
+        int compared = 0;
+        EXPECT_LE(GetLargestDifference(
+                    MakeSheet(place, slope), array, [](vtkSteerableNoiseFilter*) {}, &compared),
+          Tolerance)
+          << array << " at " << place[0] << ", slope " << slope;
+        EXPECT_GT(compared, 380) << array << " at " << place[0] << ", slope " << slope;
+      }
+    }
+  }
+}
+
+TEST(SteerableNoiseMapper, InterpolatesLikeTheReference)
+{
+  vtkNew<vtkPolyData> triangle;
+  vtkNew<vtkPoints> points;
+  points->InsertNextPoint(2.0, 3.0, 0.0);
+  points->InsertNextPoint(250.0, 20.0, 0.0);
+  points->InsertNextPoint(90.0, 240.0, 0.0);
+  vtkNew<vtkCellArray> polys;
+  polys->InsertNextCell({ 0, 1, 2 });
+  vtkNew<vtkFloatArray> vectors;
+  vectors->SetName("V");
+  vectors->SetNumberOfComponents(3);
+  vectors->InsertNextTuple3(2.0, 0.2, 0.0);
+  vectors->InsertNextTuple3(1.0, 1.5, 0.0);
+  vectors->InsertNextTuple3(-0.4, 1.0, 0.0);
+  triangle->SetPoints(points);
+  triangle->SetPolys(polys);
+  triangle->GetPointData()->SetVectors(vectors);
+  const noise::SurfaceFields fields =
+    noise::ComputeSurfaceFields(triangle, vectors, false, false);
+
+  Scene scene(triangle);
+  scene.Mapper->SetFeatureSize(17.0);
+  scene.LookDown(128.0, 128.0, 256.0);
+  const auto noise = scene.RenderNoise();
+
+  steerable::NoiseParameters parameters;
+  parameters.FeatureSize = 17.0;
+  Eigen::Matrix3d corners;
+  for (int i = 0; i < 3; ++i)
+  {
+    corners.col(i) = Eigen::Vector3d(points->GetPoint(i)[0], points->GetPoint(i)[1], 1.0);
+  }
+  const Eigen::Matrix3d toBarycentric = corners.inverse();
+  const auto interpolate = [](vtkFloatArray* array, const Eigen::Vector3d& shares)
+  {
+    Eigen::Vector3d value = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 3; ++i)
+    {
+      value += shares[i] * Eigen::Map<const Eigen::Vector3d>(array->GetTuple3(i));
+    }
+    return value;
+  };
+  int compared = 0;
+  for (int y = 5; y < Size; y += 13)
+  {
+    for (int x = 5; x < Size; x += 13)
+    {
+      const Eigen::Vector3d place(x + 0.5, y + 0.5, 0.0);
+      const Eigen::Vector3d shares = toBarycentric * Eigen::Vector3d(place[0], place[1], 1.0);
+      if (shares.minCoeff() < 0.01)
+      {
+        continue;
+      }
+      const auto metric = steerable::MetricFromSurfaceVector(
+        parameters, interpolate(fields.Steering, shares), interpolate(fields.Normals, shares));
+      const double expected = steerable::SteerableNoiseReference<3>(
+        parameters, place, metric, interpolate(fields.Curvature, shares));
+      EXPECT_NEAR(noise[static_cast<std::size_t>(y) * Size + x], expected, Tolerance) << x << " " << y;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 100);
+}
+
+TEST(SteerableNoiseMapper, CellVectorsAreMeansOrConstant)
+{
+  // Cells of 9 pixels: the middle of a cell is that of a pixel.
+  constexpr int side = 24;
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0, side + 1);
+  for (vtkIdType i = 0; i < sheet->GetNumberOfPoints(); ++i)
+  {
+    sheet->GetPoints()->SetPoint(i, 9.0 * (i % (side + 1)), 9.0 * (i / (side + 1)), 0.0);
+  }
+  sheet->GetPointData()->Initialize();
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(sheet);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "C");
+  filter->SetFeatureSize(23.0);
+  filter->Update();
+  vtkDataArray* expected =
+    vtkDataSet::SafeDownCast(filter->GetOutput())->GetCellData()->GetArray("SteerableNoise");
+
+  Scene scene(sheet, 9 * side);
+  scene.Mapper->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "C");
+  scene.Mapper->SetFeatureSize(23.0);
+  scene.LookDown(4.5 * side, 4.5 * side, 9.0 * side);
+  const auto smooth = scene.RenderNoise();
+  scene.Mapper->VectorsPerCellOn();
+  const auto constant = scene.RenderNoise();
+  double largest = 0.0;
+  double largestSmooth = 0.0;
+  for (int j = 0; j < side; ++j)
+  {
+    for (int i = 0; i < side; ++i)
+    {
+      const std::size_t pixel = static_cast<std::size_t>(9 * j + 4) * (9 * side) + 9 * i + 4;
+      const double value = expected->GetComponent(i + side * j, 0);
+      ASSERT_FALSE(std::isnan(constant[pixel]));
+      largest = std::max(largest, std::abs(constant[pixel] - value));
+      largestSmooth = std::max(largestSmooth, std::abs(smooth[pixel] - value));
+    }
+  }
+  EXPECT_LE(largest, Tolerance);
+  // The means are nearly the cell's own vector where the field is smooth.
+  EXPECT_GT(largestSmooth, Tolerance);
+  EXPECT_LT(largestSmooth, 1.0);
+}
+
+TEST(SteerableNoiseMapper, EveryVariantOfTheShaderDraws)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.1);
+  for (int variant = 0; variant < 128; ++variant)
+  {
+    Messages messages;
+    Scene scene(sheet, 64);
+    const bool cells = variant & 1;
+    const bool tensors = (variant & 2) && !cells;
+    scene.Mapper->SetInputArrayToProcess(0, 0, 0,
+      cells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS,
+      cells ? "C" : tensors ? "T" : "V");
+    scene.Mapper->SetVectorsPerCell(cells && (variant & 2));
+    scene.Mapper->SetBasis(
+      variant & 4 ? vtkSteerableNoiseMapper::STREAKS : vtkSteerableNoiseMapper::GRADIENT);
+    scene.Mapper->SetAnimate(variant & 8);
+    scene.Mapper->SetOctaves(variant & 16 ? 2 : 1);
+    scene.Mapper->SetFeatureSizeMode(
+      variant & 32 ? vtkSteerableNoiseMapper::WORLD : vtkSteerableNoiseMapper::PIXELS);
+    scene.Mapper->SetFeatureSize(25.0);
+    scene.Mapper->SetOutputValue(variant & 64);
+    scene.Mapper->SetNoiseColorMode(variant / 4 % 4);
+    scene.LookDown(114.0, 114.0, 228.0);
+    scene.Renderer->SetBackground(0.0, 0.0, 0.0);
+    const auto pixels = scene.Render();
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const unsigned char value : pixels)
+    {
+      sum += value;
+      squares += double(value) * value;
+    }
+    const double mean = sum / pixels.size();
+    EXPECT_GT(std::sqrt(squares / pixels.size() - mean * mean), 5.0) << variant;
+    EXPECT_EQ(messages.Get(), "") << variant;
+  }
+}
+
+TEST(SteerableNoiseMapper, OptionsThatFragmentsDoNotHaveAreRefused)
+{
+  const Setting refused[] = {
+    [](vtkSteerableNoiseFilter* f) { f->LatticeWindowOn(); },
+    [](vtkSteerableNoiseFilter* f) { f->SetBasis(vtkSteerableNoiseFilter::VALUE); },
+    [](vtkSteerableNoiseFilter* f) { f->SetNormalization(vtkSteerableNoiseFilter::NONE); },
+    [](vtkSteerableNoiseFilter* f) { f->SetFade(vtkSteerableNoiseFilter::WIDE); },
+    [](vtkSteerableNoiseFilter* f) { f->SetLattice(vtkSteerableNoiseFilter::JITTERED); },
+    [](vtkSteerableNoiseFilter* f) { f->SetGradientSet(vtkSteerableNoiseFilter::PERLIN); },
+    [](vtkSteerableNoiseFilter* f) { f->TurbulenceOn(); },
+    [](vtkSteerableNoiseFilter* f) { f->SetPeriod(4, 0, 0); },
+    [](vtkSteerableNoiseFilter* f) { f->SetOctaves(9); },
+  };
+  for (const Setting& set : refused)
+  {
+    Messages messages;
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    filter->SetStreakLength(4.0);
+    set(filter);
+    vtkNew<vtkSteerableNoiseMapper> mapper;
+    EXPECT_FALSE(mapper->SetOptionsFrom(filter));
+    EXPECT_EQ(mapper->GetStreakLength(), 6.0);
+    EXPECT_NE(messages.Get().find("Noise of fragments does not have"), std::string::npos);
+  }
+}
+
+TEST(SteerableNoiseMapper, WhatHasNoDirectionShowsTheSurface)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);
+  vtkDataArray* vectors = sheet->GetPointData()->GetVectors();
+  for (vtkIdType i = 0; i < sheet->GetNumberOfPoints(); ++i)
+  {
+    const double bad = i % 20 < 7 ? std::numeric_limits<double>::quiet_NaN()
+      : i % 20 > 13               ? 0.0
+                                  : vectors->GetComponent(i, 0);
+    for (int c = 0; c < 3 && (i % 20 < 7 || i % 20 > 13); ++c)
+    {
+      vectors->SetComponent(i, c, bad);
+    }
+  }
+  Scene scene(sheet);
+  scene.Actor->GetProperty()->SetColor(0.2, 0.6, 1.0);
+  scene.Actor->GetProperty()->LightingOff();
+  scene.LookDown(114.0, 114.0, 228.0);
+  scene.Mapper->SetFeatureSize(15.0);
+  const auto pixels = scene.Render();
+  const auto isSurface = [&](int x)
+  {
+    int count = 0;
+    for (int y = 20; y < 230; ++y)
+    {
+      const unsigned char* rgb = &pixels[3 * (static_cast<std::size_t>(y) * Size + x)];
+      count += std::abs(rgb[0] - 51) <= 1 && std::abs(rgb[1] - 153) <= 1 && rgb[2] >= 254;
+    }
+    return count / 210.0;
+  };
+  EXPECT_EQ(isSurface(40), 1.0);  // not finite
+  EXPECT_EQ(isSurface(82), 1.0);  // a triangle with one such corner
+  EXPECT_LT(isSurface(120), 0.3); // noise
+  EXPECT_EQ(isSurface(220), 1.0); // zero
+  scene.Mapper->UseMaskColorOn();
+  scene.Mapper->SetMaskColor(0.2, 0.6, 1.0);
+  scene.Actor->GetProperty()->SetColor(1.0, 0.0, 0.0);
+  EXPECT_EQ(scene.Render()[3 * (100 * Size + 40)], 51);
+}
+
+TEST(SteerableNoiseMapper, ColourModes)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);
+  Scene scene(sheet);
+  scene.Actor->GetProperty()->SetColor(0.8, 0.4, 0.2);
+  scene.Actor->GetProperty()->LightingOff();
+  scene.Renderer->SetBackground(0.0, 0.0, 0.0);
+  scene.LookDown(114.0, 114.0, 200.0);
+  scene.Mapper->SetFeatureSize(15.0);
+  const auto statistics = [&](int mode)
+  {
+    scene.Mapper->SetNoiseColorMode(mode);
+    const auto pixels = scene.Render();
+    double mean[3] = { 0.0, 0.0, 0.0 };
+    double squares = 0.0;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+    {
+      mean[i % 3] += pixels[i] * 3.0 / pixels.size();
+      squares += i % 3 == 0 ? pixels[i] * double(pixels[i]) * 3.0 / pixels.size() : 0.0;
+    }
+    return std::array<double, 4>{ mean[0], mean[1], mean[2],
+      std::sqrt(squares - mean[0] * mean[0]) };
+  };
+  const auto multiply = statistics(vtkSteerableNoiseMapper::MULTIPLY);
+  EXPECT_NEAR(multiply[0] / multiply[2], 4.0, 0.1); // the hue stays
+  EXPECT_LT(multiply[0], 200.0);
+  EXPECT_GT(multiply[3], 25.0);
+  const auto blend = statistics(vtkSteerableNoiseMapper::BLEND);
+  EXPECT_NEAR(blend[0], 0.8 * 127.5 + 0.2 * 204.0, 10.0); // 0.8 of grey
+  EXPECT_NEAR(blend[0] - blend[2], 0.2 * (204.0 - 51.0), 6.0);
+  const auto lightness = statistics(vtkSteerableNoiseMapper::LIGHTNESS);
+  EXPECT_NEAR(lightness[0], 204.0, 25.0);
+  EXPECT_GT(lightness[0], 1.8 * lightness[1]);
+  EXPECT_GT(lightness[3], 15.0);
+  const auto opacity = statistics(vtkSteerableNoiseMapper::OPACITY);
+  EXPECT_TRUE(scene.Mapper->HasTranslucentPolygonalGeometry());
+  EXPECT_NEAR(opacity[0] / 204.0, 0.6, 0.06); // gaps show the black behind
+  EXPECT_NEAR(opacity[0] / opacity[2], 4.0, 0.2);
+  scene.Mapper->SetNoiseIntensity(0.0);
+  EXPECT_NEAR(statistics(vtkSteerableNoiseMapper::MULTIPLY)[3], 0.0, 0.5);
+}
+
+TEST(SteerableNoiseMapper, BlocksThatShareTheirPointsKeepTheirOwnVectors)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  for (int part = 0; part < 3; ++part)
+  {
+    vtkNew<vtkPolyData> block;
+    block->SetPoints(sheet->GetPoints());
+    vtkNew<vtkCellArray> polys;
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < sheet->GetNumberOfCells(); ++cell)
+    {
+      if (cell % 19 / 7 == part)
+      {
+        sheet->GetCellPoints(cell, ids);
+        polys->InsertNextCell(ids);
+      }
+    }
+    block->SetPolys(polys);
+    if (part < 2)
+    {
+      vtkNew<vtkDoubleArray> vectors;
+      vectors->SetName("V");
+      vectors->SetNumberOfComponents(3);
+      for (vtkIdType i = 0; i < sheet->GetNumberOfPoints(); ++i)
+      {
+        vectors->InsertNextTuple3(part == 0, part == 1, 0.0);
+      }
+      block->GetPointData()->AddArray(vectors);
+    }
+    blocks->SetBlock(part, block);
+  }
+  Messages messages;
+  Scene scene(blocks);
+  scene.Mapper->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "V");
+  scene.Mapper->SetFeatureSize(12.0);
+  scene.LookDown(114.0, 114.0, 228.0);
+  const auto noise = scene.RenderNoise();
+  const auto change = [&](int x0, int dx, int dy)
+  {
+    double sum = 0.0;
+    for (int y = 30; y < 220; ++y)
+    {
+      for (int x = x0; x < x0 + 50; ++x)
+      {
+        const double step = noise[static_cast<std::size_t>(y + dy) * Size + x + dx] -
+          noise[static_cast<std::size_t>(y) * Size + x];
+        sum += step * step;
+      }
+    }
+    return std::sqrt(sum);
+  };
+  EXPECT_GT(change(20, 0, 1), 4.0 * change(20, 1, 0));   // along x
+  EXPECT_GT(change(115, 1, 0), 4.0 * change(115, 0, 1)); // along y
+  EXPECT_TRUE(std::isnan(noise[100 * Size + 220]));       // a block without the array
+  EXPECT_EQ(messages.Get(), "");
+}
+
+TEST(SteerableNoiseMapper, NoArrayIsOneWarningAndASurface)
+{
+  vtkNew<vtkSphereSource> sphere;
+  sphere->Update();
+  Messages messages;
+  Scene scene(sphere->GetOutput());
+  scene.Actor->GetProperty()->SetColor(0.5, 0.5, 0.5);
+  scene.Renderer->ResetCamera();
+  scene.Render();
+  scene.Render();
+  const auto first = messages.Get().find("There are no vectors");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(messages.Get().find("There are no vectors", first + 1), std::string::npos);
+  EXPECT_LT(scene.Render()[3 * (128 * Size + 128)], 255);
+}
+
+TEST(SteerableNoiseMapper, EveryViewportShowsTheSamePicture)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.2);
+  Scene alone(sheet, 128);
+  alone.Mapper->SetFeatureSizeMode(vtkSteerableNoiseMapper::PIXELS);
+  alone.LookDown(114.0, 114.0, 200.0);
+  const auto expected = alone.Render();
+
+  Scene scene(sheet, 256);
+  scene.Mapper->SetFeatureSizeMode(vtkSteerableNoiseMapper::PIXELS);
+  scene.LookDown(114.0, 114.0, 200.0);
+  scene.Renderer->SetViewport(0.5, 0.5, 1.0, 1.0);
+  vtkNew<vtkRenderer> other;
+  other->SetViewport(0.0, 0.0, 0.5, 0.5);
+  other->AddActor(scene.Actor);
+  other->SetActiveCamera(scene.Renderer->GetActiveCamera());
+  scene.Window->AddRenderer(other);
+  const auto pixels = scene.Render();
+  int different = 0;
+  for (int y = 0; y < 128; ++y)
+  {
+    for (int x = 0; x < 128; ++x)
+    {
+      const int value = expected[3 * (static_cast<std::size_t>(y) * 128 + x)];
+      for (const int corner : { 0, 128 })
+      {
+        different += std::abs(value -
+                       pixels[3 * (static_cast<std::size_t>(y + corner) * 256 + x + corner)]) > 2;
+      }
+    }
+  }
+  EXPECT_LE(different, 20);
+}
+
+TEST(SteerableNoiseMapper, PicksWhatAPlainMapperPicks)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);
+  Scene scene(sheet);
+  scene.LookDown(114.0, 114.0, 228.0);
+  const auto before = scene.Render();
+  vtkNew<vtkHardwareSelector> selector;
+  selector->SetFieldAssociation(vtkDataObject::FIELD_ASSOCIATION_CELLS);
+  selector->SetRenderer(scene.Renderer);
+  selector->SetArea(128, 128, 129, 129);
+  vtkSmartPointer<vtkSelection> selection;
+  selection.TakeReference(selector->Select());
+  ASSERT_EQ(selection->GetNumberOfNodes(), 1u);
+  vtkAbstractArray* ids = selection->GetNode(0)->GetSelectionList();
+  ASSERT_EQ(ids->GetNumberOfTuples(), 1);
+  EXPECT_EQ(vtkDataArray::SafeDownCast(ids)->GetTuple1(0), 9 + 19 * 9);
+  EXPECT_EQ(scene.Render(), before);
+}
+
+TEST(SteerableNoiseMapper, OptionsThatAreDrawnUploadNothing)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);
+  Scene scene(sheet);
+  scene.Mapper->AnimateOn();
+  scene.LookDown(114.0, 114.0, 228.0);
+  auto last = scene.Render();
+  // Vertices are uploaded when the mapper or its input is newer than they are.
+  const vtkMTimeType time = scene.Mapper->GetMTime();
+  const vtkMTimeType data = sheet->GetMTime();
+  for (int frame = 1; frame < 24; ++frame)
+  {
+    scene.Mapper->SetPhase(frame / 24.0);
+    const auto next = scene.Render();
+    EXPECT_NE(next, last);
+    last = next;
+  }
+  scene.Mapper->SetSeed(4);
+  scene.Mapper->SetOctaves(3);
+  scene.Mapper->SetStreakLength(9.0);
+  scene.Mapper->SetNoiseIntensity(0.4);
+  EXPECT_NE(scene.Render(), last);
+  EXPECT_EQ(scene.Mapper->GetMTime(), time);
+  EXPECT_EQ(sheet->GetMTime(), data);
+}
+
+TEST(SteerableNoiseMapper, PixelSizesZoomWithoutAJumpAndKeepTheirContrast)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);
+  Scene scene(sheet);
+  scene.Mapper->SetFeatureSizeMode(vtkSteerableNoiseMapper::PIXELS);
+  std::vector<double> before;
+  double worst = 0.0;
+  for (int step = 0; step <= 30; ++step)
+  {
+    const double zoom = std::pow(4.0, step / 30.0);
+    scene.LookDown(114.0, 114.0, 200.0 / zoom);
+    const auto noise = scene.RenderNoise();
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const double value : noise)
+    {
+      sum += value;
+      squares += value * value;
+    }
+    const double mean = sum / noise.size();
+    const double deviation = std::sqrt(squares / noise.size() - mean * mean);
+    EXPECT_GT(deviation, 0.9) << zoom;
+    EXPECT_LT(deviation, 1.1) << zoom;
+    // The same places, seen in every step.
+    std::vector<double> now;
+    for (int j = -20; j <= 20; ++j)
+    {
+      for (int i = -20; i <= 20; ++i)
+      {
+        // Between pixels: bilinear.
+        const double x = Size / 2.0 - 0.5 + i * zoom * 1.2;
+        const double y = Size / 2.0 - 0.5 + j * zoom * 1.2;
+        const int x0 = static_cast<int>(x);
+        const int y0 = static_cast<int>(y);
+        const auto at = [&](int a, int b) { return noise[static_cast<std::size_t>(b) * Size + a]; };
+        now.push_back((1 - (x - x0)) * (1 - (y - y0)) * at(x0, y0) +
+          (x - x0) * (1 - (y - y0)) * at(x0 + 1, y0) + (1 - (x - x0)) * (y - y0) * at(x0, y0 + 1) +
+          (x - x0) * (y - y0) * at(x0 + 1, y0 + 1));
+      }
+    }
+    for (std::size_t i = 0; i < before.size(); ++i)
+    {
+      worst = std::max(worst, std::abs(now[i] - before[i]));
+    }
+    before = now;
+  }
+  // A jump would be a new pattern from one step to the next, up to 6 at the worst of these places.
+  EXPECT_LT(worst, 2.0);
+}
+
+TEST(SteerableNoiseMapper, PanningMovesThePatternWithTheSurface)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);
+  Scene scene(sheet);
+  scene.Mapper->SetFeatureSizeMode(vtkSteerableNoiseMapper::PIXELS);
+  scene.LookDown(100.0, 100.0, 128.0);
+  const auto first = scene.RenderNoise();
+  scene.LookDown(105.0, 102.0, 128.0); // 10 and 4 pixels
+  const auto second = scene.RenderNoise();
+  double largest = 0.0;
+  for (int y = 10; y < 240; ++y)
+  {
+    for (int x = 10; x < 240; ++x)
+    {
+      largest = std::max(largest,
+        std::abs(first[static_cast<std::size_t>(y + 4) * Size + x + 10] -
+          second[static_cast<std::size_t>(y) * Size + x]));
+    }
+  }
+  EXPECT_LT(largest, 0.01);
+}

@@ -17,6 +17,7 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
 # Name: smallest standard deviation of brightness (0 to 255), smallest alignment.
 PICTURES = {
+    "wake_in_the_view.png": (20.0, 0.9),
     "wake_noise.png": (40.0, 0.9),
     "wake_noise_over_speed.png": (20.0, 0.9),
 }

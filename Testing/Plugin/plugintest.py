@@ -60,14 +60,18 @@ def array(dataset, name="SteerableNoise"):
     return None
 
 
+def environment_for_mpi():
+    """pvpython is an MPI process of its own: its variables would make mpiexec refuse to start."""
+    return {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_"))}
+
+
 def compare_ranks(script, pvbatch, mpi, digits):
     """
     Runs a script, which saves rows of x, y, z, value, on one rank and on three; yields each dataset's
     name, how many samples every one of the three ranks holds and the largest difference. Places are the
     same if they agree to so many digits; of several values at one place the nearest counts.
     """
-    # pvpython is an MPI process of its own: its variables would make mpiexec refuse to start.
-    environment = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_"))}
+    environment = environment_for_mpi()
     script = os.path.join(SOURCE, "Testing", "Plugin", script)
     with tempfile.TemporaryDirectory() as folder:
         for ranks in (1, 3):

@@ -25,8 +25,9 @@ for what in "${@:-address thread fuzz}"; do
       address)
         targets="SteerableNoiseKernelTests SteerableNoiseFilterTests" \
           sanitize address "-fsanitize=address,undefined -fno-sanitize-recover=undefined"
-        # VTK and MPI keep some memory to the end; what is ours is checked for its use, not for leaks.
-        export ASAN_OPTIONS=detect_leaks=0
+        # VTK and MPI keep some memory to the end; what is ours is checked for its use, not for leaks. A size
+        # that is refused is refused as new (nothrow) refuses it.
+        export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1
         long='-*NoiseQuality*:*AloneAnd*:*LatticeHash*:*EqualsTheReference*:*Subband*'
         # One core is enough for these while the other builds what comes next.
         address_log=$build.log
@@ -46,7 +47,7 @@ for what in "${@:-address thread fuzz}"; do
         build_project "${common[@]}" -DBUILD_TESTING=OFF -DSTEERABLENOISE_FUZZERS=ON \
           -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ \
           "-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined $instrumented"
-        export ASAN_OPTIONS=detect_leaks=0
+        export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1
         for fuzzer in "$build"/bin/Fuzz*; do
           echo "$(basename "$fuzzer")"
           "$fuzzer" -seed="${FUZZ_SEED:-1}" -max_total_time="${FUZZ_SECONDS:-60}" -timeout=20 -max_len=4096 \

@@ -59,7 +59,10 @@ void SetSteering(SurfaceFields& fields, vtkDataArray* array)
     float* out = steering + components * first;
     const float* read =
       reader->Read(static_cast<std::size_t>(first), static_cast<std::size_t>(size), out);
-    std::copy(read, read + components * size, out);
+    if (read != out)
+    {
+      std::copy(read, read + components * size, out);
+    }
     for (vtkIdType i = 0; i < size; ++i)
     {
       const double length = GetLength(out + components * i, components);

@@ -165,7 +165,7 @@ protected:
       ->GetInternals();
   }
 
-  /// Not on picks, and not where a geometry shader would have to pass on what the vertices say.
+  /// Not on picks.
   bool ShowsNoise(vtkRenderer* renderer)
   {
     return this->GetInternals().AnyNoise && !renderer->GetSelector();
@@ -186,6 +186,7 @@ protected:
   void ReplaceShaderValues(
     std::map<vtkShader::Type, vtkShader*> shaders, vtkRenderer* renderer, vtkActor* actor) override
   {
+    // A geometry shader (wide lines, tubes) would have to pass on what the vertices say.
     if (this->ShowsNoise(renderer) && shaders[vtkShader::Geometry]->GetSource().empty() &&
       !this->DrawingVertices)
     {

@@ -45,7 +45,7 @@ std::string GetDefines(const ShaderOptions& options, const ShaderVariant& varian
   os << "#define HASH_SEED " << HashSeed << "u\n#define HASH_JOIN " << HashJoin
      << "u\n#define HASH_AXIS_SHIFT " << HashAxisShift << "\n#define HASH_JOIN_SHIFT "
      << HashJoinShift << "\n#define LEVEL_SEED " << LevelSeed << "u\n#define NOISE_OCTAVES "
-     << model.Octaves << "\n"
+     << model.Octaves << "\n#define NOISE_COLOR_MODE " << options.ColorMode << "\n"
      << std::scientific << "#define VARIANCE_FLOOR " << VarianceFloor
      << "\n#define SURFACE_NORMAL_EIGENVALUE " << SurfaceNormalEigenvalue << "\n";
   os << (variant.Tensors ? "#define NOISE_TENSORS\n" : "")
@@ -289,7 +289,6 @@ void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRen
   setFloat("noiseCurvature", model.FollowCurvature ? 1.0 : 0.0);
   setInt("noiseSeed", static_cast<int>(model.Seed));
 
-  setInt("noiseColorMode", options.ColorMode);
   setFloat("noiseIntensity", options.Intensity);
   setFloat("noiseContrast", options.Contrast);
   if (program->IsUniformUsed("noiseMaskColor"))

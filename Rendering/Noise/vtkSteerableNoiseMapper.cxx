@@ -601,8 +601,9 @@ STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthBy,
   StrengthMode == MAGNITUDE ? steerable::StrengthMode::Magnitude : steerable::StrengthMode::Constant, )
 STEERABLENOISE_OPTION(Basis, int, Model.Surflet,
   Basis == STREAKS ? steerable::Basis::Streaks : steerable::Basis::Gradient, VARIANT)
-// Decides on which pass the geometry is drawn.
+// Decides on which pass the geometry is drawn, too.
 STEERABLENOISE_OPTION(NoiseColorMode, int, ColorMode, Clamp<int>(NoiseColorMode, MULTIPLY, OPACITY),
+  VARIANT;
   this->Modified())
 STEERABLENOISE_OPTION(VectorsPerCell, bool, VectorsPerCell, VectorsPerCell,
   this->Internal->PerCellTime.Modified())

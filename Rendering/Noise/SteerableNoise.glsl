@@ -279,8 +279,9 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
   corner = Reorder(corner, cycle, swapped);
   uvec3 first = Reorder(HASH_AXIS, cycle, swapped);
   uvec3 last = Reorder(HASH_AXIS_FINAL, cycle, swapped);
-  float bendC = dot(d, c);
-  float bendM = dot(d, m);
+  float halfBendC = 0.5 * dot(d, c);
+  float halfBendM = 0.5 * dot(d, m);
+  mat3 axes = transpose(mat3(u, c, m)); // times v: its components along u, c and m
 
   // With C and M the ellipsoid is kr s^2 + t^2 + h^2 < 1 at s u + t C + h M + s^2 d / 2. It is the same for -s
   // and -u: here streamlines go up in x.
@@ -331,6 +332,7 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
     float halfY = sqrt(clamp(left, 0.0, 1.0) * yy) + slack.x;
     int beginY = max(begin.y, int(ceil(middle.x - halfY)));
     int endY = left > 0.0 ? min(end.y, int(floor(middle.x + halfY))) : beginY - 1;
+    vec3 ofSection = x * axes[0];
     uint hashX = HashOneAxis(corner.x + uint(i), first.x, last.x) ^ seed;
     for (int j = beginY; j <= endY; ++j)
     {
@@ -341,27 +343,23 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
       float middleZ = middle.y + dy * skew;
       int beginZ = max(begin.z, int(ceil(middleZ - halfZ)));
       int endZ = leftZ > 0.0 ? min(end.z, int(floor(middleZ + halfZ))) : beginZ - 1;
+      vec3 ofRow = ofSection + y * axes[1];
       uint hashXY = hashX ^ HashOneAxis(corner.y + uint(j), first.y, last.y);
       for (int l = beginZ; l <= endZ; ++l)
       {
-        vec3 v = vec3(x, y, float(l) - f.z);
+        uint hash = HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
+        vec3 sth = ofRow + (float(l) - f.z) * axes[2];
 #ifdef NOISE_STREAKS
-        uint hash =
-          HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
         vec3 shift = vec3(HashToUnit(HashStream(hash, 3u)), HashToUnit(HashStream(hash, 4u)),
                        HashToUnit(HashStream(hash, 5u))) - 0.5;
-        v += Reorder(shift, cycle, swapped);
+        sth += axes * Reorder(shift, cycle, swapped);
 #endif
-        float s = dot(v, u);
-        float bend = 0.5 * s * s;
-        float t = dot(v, c) - bend * bendC;
-        float h = dot(v, m) - bend * bendM;
+        float s = sth.x;
+        float bend = s * s;
+        float t = sth.y - bend * halfBendC;
+        float h = sth.z - bend * halfBendM;
         float amplitude = 1.0;
 #ifdef NOISE_MOTION
-#ifndef NOISE_STREAKS
-        uint hash =
-          HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
-#endif
         float clock = fract(noisePhase + HashToUnit(HashStream(hash, 1u)));
         s += (clock - 0.5) * noiseSpeed * inversesqrt(k);
         amplitude = sin(3.14159265 * clock);
@@ -378,20 +376,12 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
           variance += noiseDensity * profile * profile;
         }
 #else
-        if (q < 1.0)
-        {
-#ifndef NOISE_MOTION
-          uint hash =
-            HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
-#endif
-          float weight = FadeOf(q);
-          float ks = k * s;
-          float bt = b * t;
-          float eh = e * h;
-          vec3 Gv = ks * metric.Direction + bt * thirdAxis + eh * metric.SecondAxis;
-          noise += amplitude * weight * dot(UniformGradient(hash), Gv);
-          variance += weight * weight * (ks * ks + bt * bt + eh * eh) * (1.0 / 3.0);
-        }
+        // 0 where q is 1 and beyond: a branch costs more than it saves.
+        float weight = FadeOf(min(q, 1.0));
+        vec3 Gv =
+          k * s * metric.Direction + b * t * thirdAxis + e * h * metric.SecondAxis;
+        noise += amplitude * weight * dot(UniformGradient(hash), Gv);
+        variance += weight * weight * dot(Gv, Gv) * (1.0 / 3.0);
 #endif
       }
     }
@@ -399,18 +389,21 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
   return noise * inversesqrt(variance + VARIANCE_FLOOR);
 }
 
-/// Pixels that a streak of one cell of `size` is wide on the screen; what is narrower than 2 fades to the mean.
-float AntiAliased(float size, float pixel, vec3 place, vec3 direction, vec3 normal)
+/// Streaks in cells of `size` fade to the mean where on the screen they are narrower than 2 pixels, or their
+/// half-length is shorter than 6.
+float AntiAliased(float size, float pixel, vec3 place, AxialMetric metric, vec3 normal)
 {
   float width = size / pixel;
+  float halfLength = width * inversesqrt(metric.Along);
   if (normal != vec3(0.0))
   {
     vec3 view = noiseView == vec3(0.0) ? normalize(noiseEye - place) : noiseView;
-    float alongView = dot(direction, view);
-    width *=
-      min(1.0, abs(dot(normal, view)) * inversesqrt(max(1.0 - alongView * alongView, 1e-6)));
+    float alongView = dot(metric.Direction, view);
+    float foreshortened = sqrt(max(1.0 - alongView * alongView, 1e-6));
+    halfLength *= foreshortened;
+    width *= min(1.0, abs(dot(normal, view)) / foreshortened);
   }
-  return smoothstep(1.0, 2.0, width);
+  return smoothstep(1.0, 2.0, width) * smoothstep(0.5, 6.0, halfLength);
 }
 
 /// A corner of cells of 2^-shift as one of cells of 1, and what is left over in those.
@@ -438,7 +431,7 @@ float SteerableNoise(vec3 place, float size, int level, float pixel, AxialMetric
   for (int i = 0; i < NOISE_OCTAVES; ++i)
   {
     float octaveSize = size / fineness;
-    float share = AntiAliased(octaveSize, pixel, place, metric.Direction, normal);
+    float share = AntiAliased(octaveSize, pixel, place, metric, normal);
     if (share > 0.0)
     {
       AxialMetric bent = metric;

@@ -453,7 +453,9 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkI
       if (this->Dimension == 2)
       {
         metric.topLeftCorner<2, 2>() =
-          MetricFromTensor<2>(parameters, tensor.topLeftCorner<2, 2>()).ToMatrix();
+          MetricFromTensor<2>(parameters, tensor.topLeftCorner<2, 2>(),
+            WholeLength(tensor.topLeftCorner<2, 2>().norm(), AcrossPlane(steering + 6 * i)))
+            .ToMatrix();
       }
       else
       {
@@ -465,7 +467,10 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkI
       const Vector<3> vector = Eigen::Map<const Eigen::Vector3f>(steering + 3 * i).cast<double>();
       if (this->Dimension == 2)
       {
-        metric.topLeftCorner<2, 2>() = MetricFromVector<2>(parameters, vector.head<2>()).ToMatrix();
+        metric.topLeftCorner<2, 2>() = 
+          MetricFromVector<2>(
+            parameters, vector.head<2>(), WholeLength(vector.head<2>().norm(), vector[2]))
+            .ToMatrix();
       }
       else if (normals)
       {

@@ -960,6 +960,70 @@ TEST(SteerableNoiseDataSets, TwoComponentsLieInThePlaneOfTheData)
   }
 }
 
+TEST(SteerableNoiseDataSets, VectorsThatLeaveThePlaneHaveOneLength)
+{
+  // In the plane 1 everywhere, out of it 0 to 3: flat images, in every plane, mask and grow as surfaces do.
+  const double along = 1.0 / 36.0;
+  for (const int flat : { 0, 1, 2 })
+  {
+    int dims[3] = { 9, 9, 9 };
+    dims[flat] = 1;
+    const auto image = MakeImage(dims[0], dims[1], dims[2]);
+    const vtkIdType count = image->GetNumberOfPoints();
+    vtkDataArray* vectors = image->GetPointData()->GetVectors();
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      double v[3] = { 0.0, 0.0, 0.0 };
+      v[(flat + 1) % 3] = 0.6;
+      v[(flat + 2) % 3] = 0.8;
+      v[flat] = 3.0 * static_cast<double>(i) / static_cast<double>(count - 1);
+      vectors->SetTuple(i, v);
+    }
+    for (const bool surface : { false, true })
+    {
+      vtkSmartPointer<vtkDataSet> dataset = image;
+      if (surface)
+      {
+        dataset = Through<vtkAppendFilter>(image);
+      }
+      vtkIdType stagnant = 0;
+      const auto output = Apply(dataset,
+        [&](vtkSteerableNoiseFilter* filter)
+        {
+          filter->SetFeatureSize(4.0);
+          filter->FollowCurvatureOff();
+          filter->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE);
+          filter->SetMaskThreshold(2.0);
+          filter->OutputMetricOn();
+          filter->Update();
+          stagnant = filter->GetNumberOfStagnantSamples();
+        }).Output;
+      const std::vector<float> noise = Values(output);
+      vtkDataArray* metrics =
+        vtkDataSet::SafeDownCast(output)->GetPointData()->GetArray("Metric");
+      vtkIdType expected = 0;
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        const double length = std::hypot(1.0, vectors->GetComponent(i, flat));
+        expected += length <= 2.0;
+        EXPECT_EQ(noise[i] == 0.0f, length <= 2.0) << flat << surface << " " << length;
+        double m[6];
+        metrics->GetTuple(i, m);
+        Eigen::Matrix3d metric;
+        metric << m[0], m[3], m[5], m[3], m[1], m[4], m[5], m[4], m[2];
+        Eigen::Vector3d u = Eigen::Vector3d::Zero();
+        u[(flat + 1) % 3] = 0.6;
+        u[(flat + 2) % 3] = 0.8;
+        // The longest, of which the reference is one, has the whole strength.
+        const double strength = length / std::sqrt(10.0);
+        EXPECT_NEAR(u.dot(metric * u), 1.0 + strength * (along - 1.0), 1e-5) << flat << surface;
+      }
+      EXPECT_EQ(stagnant, expected);
+      EXPECT_GT(expected, 10);
+    }
+  }
+}
+
 TEST(SteerableNoiseDataSets, ACreaseKeepsItsNormals)
 {
   // The faces of a cube, and each of them alone.

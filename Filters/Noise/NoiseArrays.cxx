@@ -355,8 +355,21 @@ void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, doub
       {
         sum = components > 2 ? t[0] * t[0] + t[1] * t[1] + t[2] * t[2] : t[0] * t[0] + t[1] * t[1];
       }
-      lengths[i] = std::sqrt(sum);
+      const bool tooLarge = std::isinf(sum) &&
+        std::none_of(t, t + components, [](double value) { return std::isinf(value); });
+      lengths[i] = tooLarge ? std::numeric_limits<double>::max() : std::sqrt(sum);
     });
+}
+
+double GetLargestComponent(vtkDataArray* array, vtkIdType index)
+{
+  double largest = 0.0;
+  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+  {
+    const double value = array->GetComponent(index, c);
+    largest = std::abs(value) > std::abs(largest) ? value : largest;
+  }
+  return largest;
 }
 
 vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)

@@ -126,22 +126,21 @@ int GetSlabAxis(vtkDataSet* dataset)
 
 Samples::Samples(
   vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent, int magnification,
-  const Plane& plane)
+  const Plane& plane, double limit)
   : DataSet(dataset)
   , Array(array)
   , Cells(cells)
   , Hidden(dataset)
 {
-  // Before anything looks at neighbours: what is hidden has no direction.
+  this->SetLeftOut(limit); // before anything looks at neighbours
   const bool vectors = IsVector(array->GetNumberOfComponents());
   const auto setSteering = [&](bool flat)
   {
     this->Steering = vectors ? MakeVectorReader(array, this->InAxes, flat, plane)
                              : MakeTensorReader(array, this->InAxes, flat, plane);
-    const std::vector<unsigned char>& hidden = this->Hidden.Get(cells);
-    if (!hidden.empty())
+    if (!this->LeftOut.empty())
     {
-      this->Steering = LeaveOut(std::move(this->Steering), vectors ? 3 : 6, hidden);
+      this->Steering = LeaveOut(std::move(this->Steering), vectors ? 3 : 6, this->LeftOut);
     }
     (vectors ? this->Field.Vectors : this->Field.Tensors) = this->Steering.get();
   };
@@ -224,6 +223,36 @@ void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
     this->Grid.Dimensions[i] = this->Cells ? std::max(points - 1, 1) : points;
   }
   this->IsGrid = true;
+}
+
+void Samples::SetLeftOut(double limit)
+{
+  this->LeftOut = this->Hidden.Get(this->Cells);
+  if (!std::isfinite(limit))
+  {
+    return;
+  }
+  const vtkIdType count = this->Array->GetNumberOfTuples();
+  this->LeftOut.resize(static_cast<std::size_t>(count));
+  bool any = false;
+  constexpr vtkIdType chunkSize = 4096;
+  std::vector<double> lengths(chunkSize);
+  for (vtkIdType first = 0; first < count; first += chunkSize)
+  {
+    const vtkIdType size = std::min(chunkSize, count - first);
+    ReadLengths(this->Array, static_cast<std::size_t>(first), static_cast<std::size_t>(size),
+      lengths.data());
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      unsigned char& why = this->LeftOut[static_cast<std::size_t>(first + i)];
+      why = why ? IsHidden : lengths[i] > limit ? IsTooLong : 0;
+      any = any || why;
+    }
+  }
+  if (!any)
+  {
+    this->LeftOut.clear();
+  }
 }
 
 void Samples::SetPoints()
@@ -415,7 +444,7 @@ void Samples::ComputeCurvature(double featureSize)
     }
     this->Curvature =
       ComputeStreamlineCurvature(
-      dimensions, *this->Positions, *this->Field.Vectors, this->Hidden.Get(this->Cells));
+      dimensions, *this->Positions, *this->Field.Vectors, this->LeftOut);
   }
   else
   {

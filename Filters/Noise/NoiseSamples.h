@@ -13,7 +13,9 @@
 
 #include "vtkSmartPointer.h"
 
+#include <limits>
 #include <memory>
+#include <vector>
 
 class vtkDataArray;
 class vtkDataSet;
@@ -29,10 +31,11 @@ public:
    * `cells`: the array belongs to the cells. `wholeExtent` tells whether an image is flat where the
    * dataset is a piece of it; null: the dataset is all there is. `magnification`: samples of an image
    * for each one that its vectors were interpolated from. `plane`: where two components lie, but flat
-   * images have them along their own axes.
+   * images have them along their own axes. Vectors longer than `limit` are left out.
    */
   Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent,
-    int magnification, const Plane& plane = WorldPlane);
+    int magnification, const Plane& plane = WorldPlane,
+    double limit = std::numeric_limits<double>::infinity());
   ~Samples();
 
   vtkIdType GetNumberOfSamples() const;
@@ -49,8 +52,14 @@ public:
   /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.
   void ComputeCurvature(double featureSize);
 
-  /// What neither shows nor changes its neighbours; it gets isotropic noise.
-  const HiddenSamples& GetHidden() const { return this->Hidden; }
+  /// Why a sample has no direction and lends none to its neighbours; it gets isotropic noise.
+  enum WhyLeftOut : unsigned char
+  {
+    IsHidden = 1,
+    IsTooLong = 2
+  };
+  /// One value for each sample, 0 if it is not left out; empty where none is.
+  const std::vector<unsigned char>& GetLeftOut() const { return this->LeftOut; }
 
   /// Noise of the parts [begin, end) into an array of GetNumberOfSamples() values.
   steerable::EvaluationCounts Evaluate(const steerable::SteerableNoise& kernel, std::size_t begin,
@@ -63,6 +72,7 @@ public:
 private:
   void SetGrid(vtkImageData* image, const int* wholeExtent);
   void SetPoints();
+  void SetLeftOut(double limit);
   /// Unit normals of samples on cells of dimension 2, 0 for the others; null if all are.
   vtkSmartPointer<vtkFloatArray> ComputeNormals() const;
   vtkSmartPointer<vtkFloatArray> ComputeSlabNormals() const;
@@ -71,6 +81,7 @@ private:
   vtkDataArray* Array;
   bool Cells;
   HiddenSamples Hidden;
+  std::vector<unsigned char> LeftOut;
   int Dimension = 3;
   bool IsGrid = false;
   steerable::ImageGrid Grid;

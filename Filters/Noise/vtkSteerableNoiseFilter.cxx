@@ -5,6 +5,7 @@
 #include "NoiseArrays.h"
 #include "NoiseGhosts.h"
 #include "NoiseImages.h"
+#include "NoiseLengths.h"
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
 #include "SurfaceFields.h"
@@ -25,7 +26,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkRectilinearGrid.h"
-#include "vtkSMPThreadLocal.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
@@ -49,55 +49,27 @@ struct Block
   vtkDataSet* DataSet = nullptr;
   vtkDataArray* Array = nullptr;
   bool Cells = false;
-};
+  /// What a magnified image was made from: interpolated lengths lie between those that are there.
+  vtkDataSet* Original = nullptr;
+  vtkDataArray* OriginalArray = nullptr;
 
-/// Length of the longest finite tuple that is not hidden.
-double GetLongest(vtkDataArray* array, const std::vector<unsigned char>& hidden)
-{
-  constexpr vtkIdType chunkSize = 4096;
-  vtkSMPThreadLocal<double> longest(0.0);
-  double all = 0.0;
-  noise::WithThreads(
-    [&]
-    {
-      vtkSMPTools::For(0, array->GetNumberOfTuples(), 16 * chunkSize,
-        [&](vtkIdType begin, vtkIdType end)
-        {
-          double& longestHere = longest.Local();
-          std::vector<double> lengths(chunkSize);
-          for (vtkIdType first = begin; first < end; first += chunkSize)
-          {
-            const vtkIdType count = std::min(chunkSize, end - first);
-            noise::ReadLengths(array, first, count, lengths.data());
-            for (vtkIdType i = 0; i < count; ++i)
-            {
-              if (std::isfinite(lengths[i]) && (hidden.empty() || !hidden[first + i]))
-              {
-                longestHere = std::max(longestHere, lengths[i]);
-              }
-            }
-          }
-        });
-      // In here: each backend has thread-local values of its own, and the sequential one none of these.
-      for (const double here : longest)
-      {
-        all = std::max(all, here);
-      }
-    });
-  return all;
-}
+  vtkDataSet* GetOriginal() const { return this->Original ? this->Original : this->DataSet; }
+  vtkDataArray* GetOriginalArray() const
+  {
+    return this->OriginalArray ? this->OriginalArray : this->Array;
+  }
+};
 
 /// What the ranks have to agree on; all of it combines by minimum or sum.
 struct Extremes
 {
   double Bounds[6]; // lower corner, then the negated upper one
-  double LongestVector = 0.0;
   noise::SampleSpacing Spacing;
 
   Extremes() { std::fill_n(this->Bounds, 6, std::numeric_limits<double>::infinity()); }
 
-  /// `magnitude`: the longest vector is asked for. `exact`: the spacing decides more than a warning.
-  void Add(const Block& block, bool magnitude, bool exact)
+  /// `exact`: the spacing decides more than a warning.
+  void Add(const Block& block, bool exact)
   {
     const noise::HiddenSamples hidden(block.DataSet);
     if (block.DataSet->GetNumberOfPoints() > 0)
@@ -127,11 +99,6 @@ struct Extremes
         }
       }
     }
-    if (magnitude)
-    {
-      this->LongestVector =
-        std::max(this->LongestVector, GetLongest(block.Array, hidden.Get(block.Cells)));
-    }
     this->Spacing.Add(block.DataSet, block.Cells, hidden, exact ? 1000000 : 10000);
   }
 
@@ -141,15 +108,13 @@ struct Extremes
     {
       return;
     }
-    double least[10];
+    double least[9];
     std::copy_n(this->Bounds, 6, least);
-    least[6] = -this->LongestVector;
-    std::transform(this->Spacing.Largest, this->Spacing.Largest + 3, least + 7, std::negate<>());
-    double all[10];
-    controller->AllReduce(least, all, 10, vtkCommunicator::MIN_OP);
+    std::transform(this->Spacing.Largest, this->Spacing.Largest + 3, least + 6, std::negate<>());
+    double all[9];
+    controller->AllReduce(least, all, 9, vtkCommunicator::MIN_OP);
     std::copy_n(all, 6, this->Bounds);
-    this->LongestVector = -all[6];
-    std::transform(all + 7, all + 10, this->Spacing.Largest, std::negate<>());
+    std::transform(all + 6, all + 9, this->Spacing.Largest, std::negate<>());
     double sums[4];
     std::copy_n(this->Spacing.Sum, 3, sums);
     sums[3] = this->Spacing.Count;
@@ -272,7 +237,7 @@ constexpr const char* HyperTreeGridMessage =
   "(vtkHyperTreeGridToUnstructuredGrid) first, or Resample To Image.";
 
 /// Degenerate samples are counted by the kernel with the ghosts; these are the duplicates among them.
-vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned char>& hidden)
+vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned char>& leftOut)
 {
   vtkUnsignedCharArray* ghosts = noise::GetGhosts(
     GetAttributes(block.DataSet, block.Cells), block.Array->GetNumberOfTuples());
@@ -284,7 +249,7 @@ vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned c
   double tuple[9];
   for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
   {
-    if (ghosts->GetValue(i) && (hidden.empty() || !hidden[i]))
+    if (ghosts->GetValue(i) && (leftOut.empty() || !leftOut[i]))
     {
       block.Array->GetTuple(i, tuple);
       double length = 0.0;
@@ -297,6 +262,90 @@ vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned c
   }
   return count;
 }
+
+/// How long the vectors of all blocks and ranks are, and which of them are left out.
+struct Lengths
+{
+  /// Longer ones are left out; infinite: none is.
+  double Limit;
+  /// The longest of the others, where it was asked for.
+  double Longest = 0.0;
+  noise::FarAbove FarAbove;
+  /// Their component of the largest amount.
+  double FarValue = 0.0;
+
+  /// `limit`: MaskUpperThreshold, 0 where fill values are to be found.
+  Lengths(const std::vector<Block>& blocks, bool longest, double limit,
+    vtkMultiProcessController* controller)
+    : Limit(limit > 0.0 ? limit : std::numeric_limits<double>::infinity())
+    , Controller(controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr)
+  {
+    if (!longest && (limit > 0.0 || !this->AreAnyFar(blocks)))
+    {
+      return; // nobody asks
+    }
+    noise::LengthOctaves octaves;
+    for (const Block& block : blocks)
+    {
+      const noise::HiddenSamples hidden(block.GetOriginal());
+      octaves.Add(block.GetOriginalArray(), hidden.Get(block.Cells), this->Limit);
+    }
+    if (this->Controller)
+    {
+      octaves.Reduce(this->Controller);
+    }
+    if (limit <= 0.0)
+    {
+      this->FarAbove = octaves.FindFarAbove();
+      this->Limit = this->FarAbove.Fill ? this->FarAbove.Rest : this->Limit;
+      this->FarValue = this->FarAbove.Count > 0.0 ? this->FindFarValue(blocks) : 0.0;
+    }
+    this->Longest = octaves.GetLongest(this->Limit);
+  }
+
+private:
+  bool AreAnyFar(const std::vector<Block>& blocks) const
+  {
+    int any = std::any_of(blocks.begin(), blocks.end(),
+      [](const Block& block) { return noise::MayHoldFarAbove(block.GetOriginalArray()); });
+    if (this->Controller)
+    {
+      const int here = any;
+      this->Controller->AllReduce(&here, &any, 1, vtkCommunicator::MAX_OP);
+    }
+    return any != 0;
+  }
+
+  double FindFarValue(const std::vector<Block>& blocks) const
+  {
+    double ends[2] = { 0.0, 0.0 }; // up and down
+    for (const Block& block : blocks)
+    {
+      vtkDataArray* array = block.GetOriginalArray();
+      const noise::HiddenSamples hidden(block.GetOriginal());
+      const std::vector<unsigned char>& left = hidden.Get(block.Cells);
+      for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+      {
+        double length;
+        noise::ReadLengths(array, static_cast<std::size_t>(i), 1, &length);
+        if (length > this->FarAbove.Rest && std::isfinite(length) && (left.empty() || !left[i]))
+        {
+          const double value = noise::GetLargestComponent(array, i);
+          ends[0] = std::max(ends[0], value);
+          ends[1] = std::max(ends[1], -value);
+        }
+      }
+    }
+    if (this->Controller)
+    {
+      const double here[2] = { ends[0], ends[1] };
+      this->Controller->AllReduce(here, ends, 2, vtkCommunicator::MAX_OP);
+    }
+    return ends[0] >= ends[1] ? ends[0] : -ends[1];
+  }
+
+  vtkMultiProcessController* Controller;
+};
 } // namespace
 
 struct vtkSteerableNoiseFilter::Internals
@@ -304,6 +353,7 @@ struct vtkSteerableNoiseFilter::Internals
   vtkSteerableNoiseFilter* Self = nullptr;
   steerable::EvaluationCounts Counts;
   vtkIdType Samples = 0;
+  vtkIdType TooLong = 0;
   vtkIdType BlocksWithout = 0;
   /// Why the last of them could not be used.
   std::string Why;
@@ -351,9 +401,11 @@ struct vtkSteerableNoiseFilter::Internals
   }
 
   void Process(const Block& block, const steerable::NoiseParameters& parameters,
-    const noise::Plane& plane, const int* wholeExtent, int magnification, double progressStart, double progressShare)
+    const noise::Plane& plane, double limit, const int* wholeExtent, int magnification,
+    double progressStart, double progressShare)
   {
-    noise::Samples samples(block.DataSet, block.Array, block.Cells, wholeExtent, magnification, plane);
+    noise::Samples samples(
+      block.DataSet, block.Array, block.Cells, wholeExtent, magnification, plane, limit);
     const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
     if (parameters.FollowCurvature)
     {
@@ -371,17 +423,25 @@ struct vtkSteerableNoiseFilter::Internals
       return; // half an array is none
     }
     this->Samples += samples.GetNumberOfSamples();
-    // What is hidden has no direction; with a mask it is stagnant.
-    const std::vector<unsigned char>& hidden = samples.GetHidden().Get(block.Cells);
+    // What is left out has no direction; with a mask it is stagnant.
+    const std::vector<unsigned char>& leftOut = samples.GetLeftOut();
     const auto leave = [](std::uint64_t& count, std::uint64_t out)
     { count -= std::min(count, out); };
     leave(parameters.MaskThreshold > 0.0 ? counts.Stagnant : counts.Degenerate,
-      hidden.size() - std::count(hidden.begin(), hidden.end(), 0));
+      leftOut.size() - std::count(leftOut.begin(), leftOut.end(), 0));
     if (counts.Degenerate > 0)
     {
-      leave(counts.Degenerate, CountDegenerateGhosts(block, hidden));
+      leave(counts.Degenerate, CountDegenerateGhosts(block, leftOut));
     }
     this->Counts += counts;
+    for (std::size_t i = 0; i < leftOut.size(); ++i)
+    {
+      if (leftOut[i] == noise::Samples::IsTooLong)
+      {
+        values[i] = 0.0f;
+        ++this->TooLong;
+      }
+    }
 
     vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
     if (this->Self->OutputMetric)
@@ -398,10 +458,27 @@ struct vtkSteerableNoiseFilter::Internals
     attributes->SetActiveScalars(this->Self->ResultArrayName);
   }
 
-  void Report(
-    const Extremes& extremes, const steerable::NoiseParameters& parameters, bool composite)
+  void Report(const Extremes& extremes, const Lengths& lengths, const steerable::NoiseParameters& parameters, bool composite)
   {
     std::ostringstream message;
+    const noise::FarAbove& farAbove = lengths.FarAbove;
+    if (farAbove.Fill)
+    {
+      message << "\n"
+              << this->TooLong << " samples hold " << lengths.FarValue
+              << ", far more than all others (the longest vector is " << farAbove.Longest
+              << ", the next " << farAbove.Rest
+              << "), as values do that stand for missing ones: they got 0 and count for nothing. "
+                 "MaskUpperThreshold sets the limit by hand; 1e300 takes all of them.";
+    }
+    else if (farAbove.Count > 0.0)
+    {
+      message << "\n"
+              << farAbove.Count << " vectors are far longer than all others: with components up to "
+              << lengths.FarValue << ", " << farAbove.Longest << " long, the next " << farAbove.Rest
+              << ". If they stand for missing values, set MaskUpperThreshold "
+              << 2.0 * farAbove.Rest << ".";
+    }
     if (this->Counts.Degenerate > 0)
     {
       message << "\n"
@@ -624,7 +701,8 @@ int vtkSteerableNoiseFilter::RequestData(
     auto* dataset = vtkDataSet::SafeDownCast(output);
     auto* image = vtkImageData::SafeDownCast(input);
     hasWhole = image && outInfo->Has(SDDP::WHOLE_EXTENT());
-    if (image && this->Magnification > 1)
+    const bool magnify = image && this->Magnification > 1;
+    if (magnify)
     {
       try
       {
@@ -646,17 +724,30 @@ int vtkSteerableNoiseFilter::RequestData(
       outInfo->Get(SDDP::WHOLE_EXTENT(), wholeExtent);
     }
     addBlock(dataset, true);
+    if (magnify && !blocks.empty())
+    {
+      Block& block = blocks.back();
+      Block original;
+      original.DataSet = image;
+      std::string why;
+      if (internals.FindArray(original, why) && original.Cells == block.Cells)
+      {
+        block.Original = original.DataSet;
+        block.OriginalArray = original.Array;
+      }
+    }
   }
 
   // Everything that ranks do together comes before anything that may fail on one of them.
   steerable::NoiseParameters parameters = internals.GetParameters(time);
-  const bool needsMagnitude = this->StrengthMode == MAGNITUDE && this->ReferenceMagnitude <= 0.0;
   Extremes extremes;
   for (const Block& block : blocks)
   {
-    extremes.Add(block, needsMagnitude, this->FeatureSize <= 0.0);
+    extremes.Add(block, this->FeatureSize <= 0.0);
   }
   extremes.Reduce(this->Controller);
+  const bool needsMagnitude = this->StrengthMode == MAGNITUDE && this->ReferenceMagnitude <= 0.0;
+  const Lengths lengths(blocks, needsMagnitude, this->MaskUpperThreshold, this->Controller);
   if (failed)
   {
     vtkErrorMacro(<< internals.Why);
@@ -664,7 +755,7 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   if (blocks.empty())
   {
-    internals.Report(extremes, parameters, composite != nullptr);
+    internals.Report(extremes, lengths, parameters, composite != nullptr);
     return 1;
   }
   if (this->FeatureSize <= 0.0)
@@ -674,7 +765,7 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   if (needsMagnitude)
   {
-    parameters.ReferenceMagnitude = extremes.LongestVector > 0.0 ? extremes.LongestVector : 1.0;
+    parameters.ReferenceMagnitude = lengths.Longest > 0.0 ? lengths.Longest : 1.0;
   }
   this->ResolvedFeatureSize = parameters.FeatureSize;
 
@@ -682,7 +773,7 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
     {
-      internals.Process(blocks[i], parameters, extremes.GetPlane(), hasWhole ? wholeExtent : nullptr,
+      internals.Process(blocks[i], parameters, extremes.GetPlane(), lengths.Limit, hasWhole ? wholeExtent : nullptr,
         hasWhole ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
         1.0 / blocks.size());
     }
@@ -702,7 +793,8 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   this->NumberOfDegenerateSamples = static_cast<vtkIdType>(internals.Counts.Degenerate);
   this->NumberOfStagnantSamples = static_cast<vtkIdType>(internals.Counts.Stagnant);
-  internals.Report(extremes, parameters, composite != nullptr);
+  this->NumberOfOverlongSamples = internals.TooLong;
+  internals.Report(extremes, lengths, parameters, composite != nullptr);
   return 1;
 }
 
@@ -740,6 +832,7 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
      << "\n";
   os << indent << "Magnification: " << this->Magnification << "\n";
   os << indent << "MaskThreshold: " << this->MaskThreshold << "\n";
+  os << indent << "MaskUpperThreshold: " << this->MaskUpperThreshold << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "ResultArrayName: " << (this->ResultArrayName ? this->ResultArrayName : "(none)")
      << "\n";

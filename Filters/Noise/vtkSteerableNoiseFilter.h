@@ -100,6 +100,9 @@ public:
   /// Samples of the last execution at or below MaskThreshold.
   vtkGetMacro(NumberOfStagnantSamples, vtkIdType);
 
+  /// Samples of the last execution above MaskUpperThreshold, or taken for fill values.
+  vtkGetMacro(NumberOfOverlongSamples, vtkIdType);
+
   ///@{
   /// Half-length of a streak in cells, 1 to 20, default 6. With LatticeWindow it does not count.
   vtkSetClampMacro(StreakLength, double, 1.0, 20.0);
@@ -299,6 +302,17 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Vectors above this length are left out: output 0, counted, and they do not count as neighbours or for the
+   * longest vector. 0, the default: values that stand for missing ones are left out. These are at least 99,
+   * 16 times as long as any other vector, and as alike as one number in 1 to 3 components (a factor of 1.75); a
+   * warning names them, and what is as long but not alike.
+   */
+  vtkSetClampMacro(MaskUpperThreshold, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaskUpperThreshold, double);
+  ///@}
+
+  ///@{
   /// Another seed, another noise; default 0.
   vtkSetMacro(Seed, int);
   vtkGetMacro(Seed, int);
@@ -342,6 +356,7 @@ protected:
   double ResolvedFeatureSize = 0.0;
   vtkIdType NumberOfDegenerateSamples = 0;
   vtkIdType NumberOfStagnantSamples = 0;
+  vtkIdType NumberOfOverlongSamples = 0;
   double StreakLength = 6.0;
   int Quality = 4;
   double MinimumEigenvalue = 0.5;
@@ -369,6 +384,7 @@ protected:
   int Period[3] = { 0, 0, 0 };
   int Magnification = 1;
   double MaskThreshold = 0.0;
+  double MaskUpperThreshold = 0.0;
   int Seed = 0;
   char* ResultArrayName = nullptr;
   bool OutputMetric = false;

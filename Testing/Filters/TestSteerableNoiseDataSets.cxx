@@ -1024,6 +1024,170 @@ TEST(SteerableNoiseDataSets, VectorsThatLeaveThePlaneHaveOneLength)
   }
 }
 
+TEST(SteerableNoiseDataSets, FillValuesAreLeftOut)
+{
+  // A flow with a disc of missing values: what is outside is as if they were NaN.
+  const auto disc = [](vtkDataSet* dataset, vtkIdType i)
+  {
+    double p[3];
+    dataset->GetPoint(i, p);
+    return std::hypot(p[0] - 20.0, p[1] - 20.0) < 9.0;
+  };
+  const auto fill = [&](vtkDataSet* dataset, double u, double v)
+  {
+    vtkIdType count = 0;
+    vtkDataArray* vectors = dataset->GetPointData()->GetVectors();
+    for (vtkIdType i = 0; i < dataset->GetNumberOfPoints(); ++i)
+    {
+      if (disc(dataset, i))
+      {
+        vectors->SetTuple3(i, u, v, 0.0);
+        ++count;
+      }
+    }
+    return count;
+  };
+  for (const bool unstructured : { false, true })
+  {
+    const auto make = [&]() -> vtkSmartPointer<vtkDataSet>
+    {
+      auto image = MakeImage(41, 41, 1);
+      vtkSmartPointer<vtkDataSet> grid = Through<vtkAppendFilter>(image);
+      return unstructured ? grid : vtkSmartPointer<vtkDataSet>(image);
+    };
+    const auto configure = [](vtkSteerableNoiseFilter* filter)
+    {
+      filter->SetFeatureSize(5.0);
+      filter->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE);
+    };
+    const auto missing = make();
+    const vtkIdType count = fill(missing, std::nan(""), std::nan(""));
+    ASSERT_GT(count, 100);
+    const std::vector<float> expected = Values(Apply(missing, configure).Output);
+    const double values[][2] = { { -30000, -30000 }, { 1e20, 1e20 }, { 9.96921e36, 0.5 }, { -9999, 0 },
+      { 99, 99 } };
+    for (const auto& value : values)
+    {
+      const auto input = make();
+      fill(input, value[0], value[1]);
+      vtkIdType found = 0;
+      const Result result = Apply(input,
+        [&](vtkSteerableNoiseFilter* filter)
+        {
+          configure(filter);
+          filter->Update();
+          found = filter->GetNumberOfOverlongSamples();
+          EXPECT_EQ(filter->GetNumberOfDegenerateSamples(), 0);
+        });
+      EXPECT_EQ(found, count) << value[0];
+      EXPECT_EQ(result.Warnings, 1) << value[0];
+      std::ostringstream name;
+      name << count << " samples hold " << value[0] << ",";
+      EXPECT_NE(result.Text.find(name.str()), std::string::npos) << result.Text;
+      const std::vector<float> noise = Values(result.Output);
+      for (std::size_t i = 0; i < noise.size(); ++i)
+      {
+        ASSERT_EQ(noise[i], disc(input, static_cast<vtkIdType>(i)) ? 0.0f : expected[i]) << value[0];
+      }
+    }
+  }
+  // Interpolated ones go with them, and a block of nothing else does not change the rule.
+  auto image = MakeImage(41, 41, 1);
+  fill(image, -30000, -30000);
+  auto land = MakeImage(9, 9, 1);
+  land->SetOrigin(12.0, 12.0, 0.0);
+  land->GetPointData()->GetVectors()->Fill(-30000);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, land);
+  blocks->SetBlock(1, image);
+  for (vtkDataObject* input : { static_cast<vtkDataObject*>(image.Get()),
+         static_cast<vtkDataObject*>(blocks.Get()) })
+  {
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    auto messages = Listen(filter);
+    filter->SetInputDataObject(input);
+    filter->SetFeatureSize(5.0);
+    filter->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE);
+    filter->SetMagnification(input == image.Get() ? 4 : 1);
+    filter->OutputMetricOn();
+    filter->Update();
+    EXPECT_NE(messages->Text.find("hold -30000"), std::string::npos) << messages->Text;
+    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    if (!output)
+    {
+      output = vtkDataSet::SafeDownCast(
+        vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetBlock(1));
+      EXPECT_GT(filter->GetNumberOfOverlongSamples(), 81);
+    }
+    // In the open the strength is that of flow of at most 3.
+    vtkDataArray* metrics = output->GetPointData()->GetArray("Metric");
+    double m[6];
+    metrics->GetTuple(0, m);
+    EXPECT_GT(m[0] + m[1], 2.4);
+    vtkDataArray* vectors = output->GetPointData()->GetVectors();
+    const std::vector<float> noise = Values(output);
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+    {
+      double v[3];
+      vectors->GetTuple(i, v);
+      if (vtkMath::Norm(v) > 4.0)
+      {
+        ASSERT_EQ(noise[static_cast<std::size_t>(i)], 0.0f) << vtkMath::Norm(v);
+      }
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, WhatStandsOutIsNotAlwaysAFillValue)
+{
+  struct Case
+  {
+    const char* Name;
+    std::function<double(int)> Length; // of sample i of 1600
+    double Upper;
+    vtkIdType LeftOut;
+    const char* Says;
+  };
+  const auto last = [](double value)
+  { return [value](int i) { return i >= 1590 ? value : 1.0 + 0.001 * i; }; };
+  const Case cases[] = { { "98", last(98.0), 0.0, 0, nullptr },
+    { "16 times", last(16.2 * 2.589), 0.0, 0, nullptr },
+    { "99", last(99.0), 0.0, 10, "10 samples hold 99," },
+    { "by hand", last(98.0), 50.0, 10, nullptr },
+    { "none by hand", last(1e20), 1e300, 0, nullptr },
+    { "two of them", [](int i) { return i < 5 ? 1e20 : i < 12 ? -9999.0 : 2.0; }, 0.0, 12, "hold 1e+20" },
+    { "a decade a hundred samples", [](int i) { return std::pow(10.0, i / 100.0 - 8.0); }, 0.0, 0,
+      nullptr },
+    { "a jet beside rounding", [](int i) { return i < 800 ? 1e-14 * i : 0.5 * i; }, 0.0, 0,
+      "800 vectors are far longer" },
+    { "smeared", [](int i) { return i > 1590 ? 3000.0 * (i - 1590) : 2.0; }, 0.0, 0,
+      "set MaskUpperThreshold 4." } };
+  for (const Case& c : cases)
+  {
+    auto image = MakeImage(40, 40, 1);
+    vtkDataArray* vectors = image->GetPointData()->GetVectors();
+    for (int i = 0; i < 1600; ++i)
+    {
+      vectors->SetTuple3(i, c.Length(i), 0.0, 0.0);
+    }
+    vtkIdType leftOut = -1;
+    const Result result = Apply(image,
+      [&](vtkSteerableNoiseFilter* filter)
+      {
+        filter->SetFeatureSize(5.0);
+        filter->SetMaskUpperThreshold(c.Upper);
+        filter->SetMaskThreshold(1e-30); // some are 0
+        filter->Update();
+        leftOut = filter->GetNumberOfOverlongSamples();
+      });
+    EXPECT_EQ(leftOut, c.LeftOut) << c.Name;
+    EXPECT_EQ(result.Warnings, c.Says ? 1 : 0) << c.Name << result.Text;
+    EXPECT_NE(result.Text.find(c.Says ? c.Says : ""), std::string::npos) << c.Name << result.Text;
+    const std::vector<float> noise = Values(result.Output);
+    EXPECT_GE(std::count(noise.begin(), noise.end(), 0.0f), c.LeftOut) << c.Name;
+  }
+}
+
 TEST(SteerableNoiseDataSets, ACreaseKeepsItsNormals)
 {
   // The faces of a cube, and each of them alone.

@@ -21,10 +21,8 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
-#include "vtkRectilinearGrid.h"
 #include "vtkSMPTools.h"
 #include "vtkStaticPointLocator.h"
-#include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <Eigen/Geometry>
@@ -74,62 +72,15 @@ bool IsGhostCell(vtkUnsignedCharArray* ghosts, vtkIdType cell)
     (ghosts->GetValue(cell) &
       vtkDataSetAttributes::DUPLICATECELL);
 }
-
-/// Points along each axis of a structured dataset; false for the others.
-bool GetDimensions(vtkDataSet* dataset, int dims[3])
-{
-  if (auto* image = vtkImageData::SafeDownCast(dataset))
-  {
-    image->GetDimensions(dims);
-    return true;
-  }
-  if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(dataset))
-  {
-    rectilinear->GetDimensions(dims);
-    return true;
-  }
-  if (auto* structured = vtkStructuredGrid::SafeDownCast(dataset))
-  {
-    structured->GetDimensions(dims);
-    return true;
-  }
-  return false;
-}
-
-/// The axis along which a structured dataset is one cell thick, -1 if none or several.
-int GetSlabAxis(vtkDataSet* dataset)
-{
-  int dims[3];
-  if (!GetDimensions(dataset, dims))
-  {
-    return -1;
-  }
-  int slab = -1;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (dims[axis] < 2)
-    {
-      return -1; // flat: its cells are surfaces anyway
-    }
-    if (dims[axis] == 2)
-    {
-      if (slab >= 0)
-      {
-        return -1;
-      }
-      slab = axis;
-    }
-  }
-  return slab;
-}
 } // namespace
 
 Samples::Samples(
-  vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent, int magnification,
+  vtkDataSet* dataset, vtkDataArray* array, bool cells, const Shape& shape, int magnification,
   const Plane& plane, double limit)
   : DataSet(dataset)
   , Array(array)
   , Cells(cells)
+  , TakenAs(shape)
   , Hidden(dataset)
 {
   this->SetLeftOut(limit); // before anything looks at neighbours
@@ -144,9 +95,9 @@ Samples::Samples(
     }
     (vectors ? this->Field.Vectors : this->Field.Tensors) = this->Steering.get();
   };
-  if (auto* image = vtkImageData::SafeDownCast(dataset))
+  if (shape.IsGrid)
   {
-    this->SetGrid(image, wholeExtent);
+    this->SetGrid(vtkImageData::SafeDownCast(dataset));
     this->Grid.CurvatureStride = magnification;
   }
   else
@@ -165,11 +116,11 @@ vtkIdType Samples::GetNumberOfSamples() const
 
 std::size_t Samples::GetNumberOfParts() const
 {
-  return this->IsGrid ? this->Grid.GetNumberOfRows()
+  return this->TakenAs.IsGrid ? this->Grid.GetNumberOfRows()
                       : static_cast<std::size_t>(this->GetNumberOfSamples());
 }
 
-void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
+void Samples::SetGrid(vtkImageData* image)
 {
   int extent[6];
   image->GetExtent(extent);
@@ -179,13 +130,7 @@ void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
 
   // The axes of the image, those with extent first; the others keep their cyclic order.
   int order[3] = { 0, 1, 2 };
-  const int* whole = wholeExtent ? wholeExtent : extent;
-  int thick[3];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int cells = whole[2 * axis + 1] - whole[2 * axis];
-    thick[axis] = this->Cells ? cells > 1 : cells > 0;
-  }
+  const bool(&thick)[3] = this->TakenAs.Thick;
   if (!thick[0] && !thick[1] && thick[2])
   {
     order[0] = 2;
@@ -194,7 +139,7 @@ void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
   }
   else
   {
-    std::stable_partition(order, order + 3, [&](int axis) { return thick[axis] != 0; });
+    std::stable_partition(order, order + 3, [&](int axis) { return thick[axis]; });
   }
   this->Dimension = thick[0] && thick[1] && thick[2] ? 3 : 2;
 
@@ -222,7 +167,6 @@ void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
     this->Grid.FirstIndex[i] = extent[2 * axis];
     this->Grid.Dimensions[i] = this->Cells ? std::max(points - 1, 1) : points;
   }
-  this->IsGrid = true;
 }
 
 void Samples::SetLeftOut(double limit)
@@ -278,7 +222,7 @@ void Samples::SetPoints()
       [&]
       {
         this->Normals =
-          GetSlabAxis(this->DataSet) >= 0 ? this->ComputeSlabNormals() : this->ComputeNormals();
+          this->TakenAs.Slab >= 0 ? this->ComputeSlabNormals() : this->ComputeNormals();
       });
   }
   if (this->Normals)
@@ -380,7 +324,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
 {
   int dims[3];
   GetDimensions(this->DataSet, dims);
-  const int slab = GetSlabAxis(this->DataSet);
+  const int slab = this->TakenAs.Slab;
   const int u = (slab + 1) % 3;
   const int v = (slab + 2) % 3;
   const vtkIdType stride[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };
@@ -431,7 +375,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
 void Samples::ComputeCurvature(double featureSize)
 {
   const vtkIdType count = this->GetNumberOfSamples();
-  if (this->IsGrid || count == 0 || !this->Field.Vectors || this->DataSet->GetNumberOfCells() == 0)
+  if (this->TakenAs.IsGrid || count == 0 || !this->Field.Vectors || this->DataSet->GetNumberOfCells() == 0)
   {
     return;
   }
@@ -459,7 +403,7 @@ void Samples::ComputeCurvature(double featureSize)
 steerable::EvaluationCounts Samples::Evaluate(
   const steerable::SteerableNoise& kernel, std::size_t begin, std::size_t end, float* noise) const
 {
-  return this->IsGrid ? kernel.EvaluateImage(this->Grid, this->Field, begin, end, noise)
+  return this->TakenAs.IsGrid ? kernel.EvaluateImage(this->Grid, this->Field, begin, end, noise)
                       : kernel.EvaluatePoints(*this->Positions, this->Field, begin, end, noise);
 }
 
@@ -594,7 +538,7 @@ bool GetNearest(vtkStaticPointLocator* locator, vtkDataSet* dataset, vtkIdType p
 } // namespace
 
 void SampleSpacing::Add(
-  vtkDataSet* dataset, bool centers, const HiddenSamples& hidden, vtkIdType cellsAtMost)
+  vtkDataSet* dataset, bool centers, int slab, const HiddenSamples& hidden, vtkIdType cellsAtMost)
 {
   if (auto* image = vtkImageData::SafeDownCast(dataset))
   {
@@ -658,7 +602,6 @@ void SampleSpacing::Add(
   }
   const CellDimensions dimensions(dataset);
   // A slab's own thickness says nothing about the distance of its samples: one side of it does.
-  const int slab = GetSlabAxis(dataset);
   int dims[3] = { 1, 1, 1 };
   GetDimensions(dataset, dims);
   const vtkIdType strides[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };

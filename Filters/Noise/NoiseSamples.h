@@ -10,6 +10,7 @@
 
 #include "NoiseArrays.h"
 #include "NoiseGhosts.h"
+#include "NoiseShape.h"
 
 #include "vtkSmartPointer.h"
 
@@ -28,13 +29,11 @@ class Samples
 {
 public:
   /**
-   * `cells`: the array belongs to the cells. `wholeExtent` tells whether an image is flat where the
-   * dataset is a piece of it; null: the dataset is all there is. `magnification`: samples of an image
+   * `cells`: the array belongs to the cells. `shape` as CommonShape has it. `magnification`: samples of an image
    * for each one that its vectors were interpolated from. `plane`: where two components lie, but flat
    * images have them along their own axes. Vectors longer than `limit` are left out.
    */
-  Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent,
-    int magnification, const Plane& plane = WorldPlane,
+  Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const Shape& shape, int magnification, const Plane& plane = WorldPlane,
     double limit = std::numeric_limits<double>::infinity());
   ~Samples();
 
@@ -70,7 +69,7 @@ public:
     float* metrics) const;
 
 private:
-  void SetGrid(vtkImageData* image, const int* wholeExtent);
+  void SetGrid(vtkImageData* image);
   void SetPoints();
   void SetLeftOut(double limit);
   /// Unit normals of samples on cells of dimension 2, 0 for the others; null if all are.
@@ -80,10 +79,10 @@ private:
   vtkDataSet* DataSet;
   vtkDataArray* Array;
   bool Cells;
+  Shape TakenAs;
   HiddenSamples Hidden;
   std::vector<unsigned char> LeftOut;
   int Dimension = 3;
-  bool IsGrid = false;
   steerable::ImageGrid Grid;
   Axes InAxes = WorldAxes;
   steerable::Field Field;
@@ -111,9 +110,10 @@ struct SampleSpacing
    * the spacing of a lattice with the same number of samples and the same variance of their places along
    * each axis; strips and lines count as their triangles and segments, polygons by their edges, and
    * vertices by the distance of the nearest other place. Ghosts and hidden cells are left out, and of more
-   * than `cellsAtMost` cells an even choice is looked at.
+   * than `cellsAtMost` cells an even choice is looked at. `slab`: Shape's.
    */
-  void Add(vtkDataSet* dataset, bool centers, const HiddenSamples& hidden, vtkIdType cellsAtMost);
+  void Add(vtkDataSet* dataset, bool centers, int slab, const HiddenSamples& hidden,
+    vtkIdType cellsAtMost);
 };
 } // namespace noise
 

@@ -49,6 +49,7 @@ struct Block
   vtkDataSet* DataSet = nullptr;
   vtkDataArray* Array = nullptr;
   bool Cells = false;
+  noise::Shape Shape;
   /// What a magnified image was made from: interpolated lengths lie between those that are there.
   vtkDataSet* Original = nullptr;
   vtkDataArray* OriginalArray = nullptr;
@@ -99,7 +100,7 @@ struct Extremes
         }
       }
     }
-    this->Spacing.Add(block.DataSet, block.Cells, hidden, exact ? 1000000 : 10000);
+    this->Spacing.Add(block.DataSet, block.Cells, block.Shape.Slab, hidden, exact ? 1000000 : 10000);
   }
 
   void Reduce(vtkMultiProcessController* controller)
@@ -401,11 +402,11 @@ struct vtkSteerableNoiseFilter::Internals
   }
 
   void Process(const Block& block, const steerable::NoiseParameters& parameters,
-    const noise::Plane& plane, double limit, const int* wholeExtent, int magnification,
+    const noise::Plane& plane, double limit, int magnification,
     double progressStart, double progressShare)
   {
     noise::Samples samples(
-      block.DataSet, block.Array, block.Cells, wholeExtent, magnification, plane, limit);
+      block.DataSet, block.Array, block.Cells, block.Shape, magnification, plane, limit);
     const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
     if (parameters.FollowCurvature)
     {
@@ -671,7 +672,7 @@ int vtkSteerableNoiseFilter::RequestData(
   // The output: shallow copies of the input's datasets, so that arrays can be added.
   vtkCompositeDataSet* composite = vtkCompositeDataSet::SafeDownCast(output);
   int wholeExtent[6];
-  bool hasWhole = false;
+  const int* whole = nullptr;
   if (composite)
   {
     auto* inputs = vtkCompositeDataSet::SafeDownCast(input);
@@ -700,7 +701,6 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     auto* dataset = vtkDataSet::SafeDownCast(output);
     auto* image = vtkImageData::SafeDownCast(input);
-    hasWhole = image && outInfo->Has(SDDP::WHOLE_EXTENT());
     const bool magnify = image && this->Magnification > 1;
     if (magnify)
     {
@@ -719,9 +719,10 @@ int vtkSteerableNoiseFilter::RequestData(
     {
       dataset->ShallowCopy(input);
     }
-    if (hasWhole)
+    if (outInfo->Has(SDDP::WHOLE_EXTENT()))
     {
       outInfo->Get(SDDP::WHOLE_EXTENT(), wholeExtent);
+      whole = wholeExtent;
     }
     addBlock(dataset, true);
     if (magnify && !blocks.empty())
@@ -740,6 +741,16 @@ int vtkSteerableNoiseFilter::RequestData(
 
   // Everything that ranks do together comes before anything that may fail on one of them.
   steerable::NoiseParameters parameters = internals.GetParameters(time);
+  noise::CommonShape shape;
+  for (const Block& block : blocks)
+  {
+    shape.Add(block.DataSet, block.Cells, whole);
+  }
+  shape.Reduce(this->Controller);
+  for (Block& block : blocks)
+  {
+    block.Shape = shape.Get(block.DataSet, block.Cells, whole);
+  }
   Extremes extremes;
   for (const Block& block : blocks)
   {
@@ -773,8 +784,8 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
     {
-      internals.Process(blocks[i], parameters, extremes.GetPlane(), lengths.Limit, hasWhole ? wholeExtent : nullptr,
-        hasWhole ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
+      internals.Process(blocks[i], parameters, extremes.GetPlane(), lengths.Limit,
+        blocks[i].Original ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
         1.0 / blocks.size());
     }
   }

@@ -12,7 +12,8 @@
  * its neighbours' vectors too), so it does not depend on the camera, on threads, on pieces or on ranks.
  *
  * Flat images get 2D noise in their plane; volumes get 3D noise; cells of dimension 2 in other datasets
- * get 3D noise whose metric lies in the surface. Turned images use lattices along their own axes.
+ * get 3D noise whose metric lies in the surface. The blocks of a composite agree on it over all ranks: flat images
+ * next to other data are surfaces, and structured grids one cell thick are surfaces only where no volume is. Turned images use lattices along their own axes.
  *
  * Vectors without a direction (zero, NaN, infinite) get isotropic noise and are counted in one warning.
  * A missing array is an error in a plain dataset; a block of a composite without it is passed on and

@@ -31,6 +31,7 @@
 #include "vtkStructuredGrid.h"
 #include "vtkTransform.h"
 #include "vtkTransformFilter.h"
+#include "vtkTrivialProducer.h"
 #include "vtkUniformGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
@@ -383,6 +384,177 @@ TEST(SteerableNoiseDataSets, FlatSlabsOneCellThickAreSurfaces)
     }
     // As an image, cells one thick are a flat image.
     EXPECT_TRUE(AllFinite(Values(Apply(image).Output)));
+  }
+}
+
+namespace
+{
+/// A part of a structured dataset, with its places and arrays.
+vtkSmartPointer<vtkDataSet> Part(vtkDataSet* whole, const int (&extent)[6])
+{
+  auto part = vtkSmartPointer<vtkDataSet>::Take(whole->NewInstance());
+  part->ShallowCopy(whole);
+  if (auto* image = vtkImageData::SafeDownCast(part))
+  {
+    image->Crop(extent);
+  }
+  else if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(part))
+  {
+    rectilinear->Crop(extent);
+  }
+  else
+  {
+    vtkStructuredGrid::SafeDownCast(part)->Crop(extent);
+  }
+  return part;
+}
+
+void Straight(vtkSteerableNoiseFilter* filter)
+{
+  filter->SetFeatureSize(3.0);
+  filter->FollowCurvatureOff();
+}
+} // namespace
+
+TEST(SteerableNoiseDataSets, ABlockOneCellThickContinuesItsNeighbours)
+{
+  // 8 x 6 x 5 cells, the layers at the upper ends of each axis as blocks of their own.
+  for (const bool cells : { false, true })
+  {
+    const vtkSmartPointer<vtkDataSet> wholes[] = { Box(cells), Rectilinear(cells),
+      Through<vtkImageDataToPointSet>(Box(cells)) };
+    for (const auto& whole : wholes)
+    {
+      const std::vector<float> expected = Values(Apply(whole, Straight).Output);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        int lower[6] = { 0, 8, 0, 6, 0, 5 };
+        int upper[6] = { 0, 8, 0, 6, 0, 5 };
+        lower[2 * axis + 1] -= 1;
+        upper[2 * axis] = lower[2 * axis + 1];
+        vtkNew<vtkMultiBlockDataSet> blocks;
+        blocks->SetBlock(0, Part(whole, upper));
+        blocks->SetBlock(1, Part(whole, lower));
+        const auto output = Apply(blocks, Straight).Output;
+        const std::vector<float> noise =
+          Values(vtkMultiBlockDataSet::SafeDownCast(output)->GetBlock(0));
+        // The same samples of the whole.
+        const int more = cells ? 0 : 1;
+        std::vector<float> same;
+        for (int k = upper[4]; k < upper[5] + more; ++k)
+        {
+          for (int j = upper[2]; j < upper[3] + more; ++j)
+          {
+            for (int i = upper[0]; i < upper[1] + more; ++i)
+            {
+              same.push_back(expected[(k * (6 + more) + j) * (8 + more) + i]);
+            }
+          }
+        }
+        EXPECT_LT(LargestDifference(noise, same), 5e-6)
+          << whole->GetClassName() << (cells ? " cells " : " points ") << axis;
+      }
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, APieceOneCellThickIsAPieceOfItsWhole)
+{
+  // Of a source in pieces: the extent of the whole decides.
+  for (const auto& whole : { vtkSmartPointer<vtkDataSet>(Rectilinear(false)),
+         Through<vtkImageDataToPointSet>(Box(false)) })
+  {
+    const std::vector<float> expected = Values(Apply(whole, Straight).Output);
+    vtkNew<vtkTrivialProducer> source;
+    source->SetOutput(Part(whole, { 0, 8, 0, 6, 4, 5 }));
+    source->SetWholeExtent(0, 8, 0, 6, 0, 5);
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    filter->SetInputConnection(source->GetOutputPort());
+    Straight(filter);
+    filter->UpdateInformation();
+    const int part[6] = { 0, 8, 0, 6, 4, 5 };
+    filter->UpdateExtent(part);
+    EXPECT_LT(LargestDifference(Values(filter->GetOutputDataObject(0)),
+                std::vector<float>(expected.end() - 2 * 63, expected.end())),
+      5e-6)
+      << whole->GetClassName();
+  }
+}
+
+TEST(SteerableNoiseDataSets, FlatImagesOfACompositeHaveOneKindOfNoise)
+{
+  // A column one cell wide is flat along another axis, but not next to the rest of its image.
+  const auto flat = MakeImage(12, 9, 1, 1.0, true);
+  vtkNew<vtkMultiBlockDataSet> columns;
+  columns->SetBlock(0, Part(flat, { 0, 10, 0, 8, 0, 0 }));
+  columns->SetBlock(1, Part(flat, { 10, 11, 0, 8, 0, 0 }));
+  const std::vector<float> expected = Values(Apply(flat, Straight).Output);
+  std::vector<float> column;
+  for (std::size_t row = 0; row < 8; ++row)
+  {
+    column.push_back(expected[11 * row + 10]);
+  }
+  const auto block = [](vtkDataObject* output, unsigned int index)
+  { return Values(vtkMultiBlockDataSet::SafeDownCast(output)->GetBlock(index)); };
+  EXPECT_LT(LargestDifference(block(Apply(columns, Straight).Output, 1), column), 5e-6);
+
+  // Next to other surfaces, or another plane, an image is a surface in space.
+  const auto image = MakeImage(12, 9, 1);
+  const vtkSmartPointer<vtkDataSet> grid = Through<vtkImageDataToPointSet>(image);
+  const std::vector<float> surface = Values(Apply(grid, Straight).Output);
+  vtkNew<vtkImageData> across;
+  across->SetDimensions(12, 1, 9);
+  AddFlow(across);
+  for (vtkDataSet* other : { grid.Get(), static_cast<vtkDataSet*>(across.Get()) })
+  {
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    blocks->SetBlock(0, image);
+    blocks->SetBlock(1, other);
+    EXPECT_LT(LargestDifference(block(Apply(blocks, Straight).Output, 0), surface), 5e-6) << other->GetClassName();
+  }
+  // Two in the same plane are as one, in the plane.
+  vtkNew<vtkMultiBlockDataSet> two;
+  two->SetBlock(0, image);
+  two->SetBlock(1, image);
+  EXPECT_EQ(block(Apply(two, Straight).Output, 0), Values(Apply(image, Straight).Output));
+}
+
+TEST(SteerableNoiseDataSets, PatchesOneCellThickInAnAMRAreNotFlat)
+{
+  vtkNew<vtkNonOverlappingAMR> amr;
+  const int blocks[2] = { 1, 3 };
+  amr->Initialize(2, blocks);
+  vtkNew<vtkUniformGrid> coarse;
+  coarse->SetDimensions(5, 5, 5);
+  coarse->SetSpacing(2.0, 2.0, 2.0);
+  AddFlow(coarse, true);
+  amr->SetDataSet(0, 0, coarse);
+  const auto fine = MakeImage(9, 9, 9, 1.0, true);
+  const std::vector<float> expected = Values(Apply(fine, Straight).Output);
+  for (unsigned int axis = 0; axis < 3; ++axis)
+  {
+    vtkNew<vtkUniformGrid> patch;
+    int extent[6] = { 0, 8, 0, 8, 0, 8 };
+    extent[2 * axis + 1] = 1;
+    patch->SetExtent(extent);
+    AddFlow(patch, true);
+    amr->SetDataSet(1, axis, patch);
+  }
+  const Result result = Apply(amr, Straight);
+  auto* output = vtkNonOverlappingAMR::SafeDownCast(result.Output);
+  for (unsigned int axis = 0; axis < 3; ++axis)
+  {
+    const std::vector<float> noise = Values(output->GetDataSet(1, axis));
+    std::vector<float> same;
+    for (int cell = 0; cell < 512; ++cell)
+    {
+      const int index[3] = { cell % 8, cell / 8 % 8, cell / 64 };
+      if (index[axis] == 0)
+      {
+        same.push_back(expected[static_cast<std::size_t>(cell)]);
+      }
+    }
+    EXPECT_LT(LargestDifference(noise, same), 5e-6) << axis;
   }
 }
 

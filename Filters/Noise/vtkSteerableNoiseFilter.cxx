@@ -356,6 +356,8 @@ struct vtkSteerableNoiseFilter::Internals
   vtkIdType Samples = 0;
   vtkIdType TooLong = 0;
   vtkIdType BlocksWithout = 0;
+  /// Of an AMR, which Magnification leaves alone.
+  vtkIdType ImagesAsTheyAre = 0;
   /// Why the last of them could not be used.
   std::string Why;
 
@@ -492,6 +494,12 @@ struct vtkSteerableNoiseFilter::Internals
       message << "\n"
               << this->BlocksWithout
               << " block(s) have no usable array and were passed on without noise. " << this->Why;
+    }
+    if (this->ImagesAsTheyAre > 0)
+    {
+      message << "\nMagnification leaves the " << this->ImagesAsTheyAre
+              << " images of an AMR as they are: its levels say how fine they are. Resample to Image, or "
+                 "Extract Level and Merge Blocks, first.";
     }
     const double smallest = extremes.GetSmallestSize();
     const double finest =
@@ -652,19 +660,27 @@ int vtkSteerableNoiseFilter::RequestData(
   internals.Self = this;
   std::vector<Block> blocks;
   bool failed = false;
-  const auto addBlock = [&](vtkDataSet* dataset, bool required)
+  // `original`: what `dataset` was magnified from, or null.
+  const auto addBlock = [&](vtkDataSet* dataset, vtkDataSet* original, bool required)
   {
     Block block;
     block.DataSet = dataset;
     std::string why;
     if (internals.FindArray(block, why))
     {
+      Block coarse;
+      coarse.DataSet = original;
+      if (original && internals.FindArray(coarse, why) && coarse.Cells == block.Cells)
+      {
+        block.Original = original;
+        block.OriginalArray = coarse.Array;
+      }
       blocks.push_back(block);
     }
     else if (dataset->GetNumberOfPoints() > 0)
     {
+      internals.Why = failed ? internals.Why : why;
       failed = failed || required;
-      internals.Why = why;
       ++internals.BlocksWithout;
     }
   };
@@ -679,15 +695,47 @@ int vtkSteerableNoiseFilter::RequestData(
     composite->CopyStructure(inputs);
     composite->GetFieldData()->PassData(inputs->GetFieldData());
     auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(inputs->NewIterator());
+    // The levels of an AMR say how fine its images are.
+    const bool isAMR = composite->IsA("vtkUniformGridAMR");
+    const bool magnify = this->Magnification > 1 && !isAMR;
+    try
+    {
+      std::vector<vtkImageData*> images;
+      for (iterator->InitTraversal(); magnify && !iterator->IsDoneWithTraversal();
+           iterator->GoToNextItem())
+      {
+        if (auto* image = vtkImageData::SafeDownCast(iterator->GetCurrentDataObject()))
+        {
+          images.push_back(image);
+        }
+      }
+      noise::CheckMemory(images, this->Magnification);
+    }
+    catch (const std::exception& error)
+    {
+      // Not before the others know: they wait for this rank.
+      internals.Why = error.what();
+      failed = true;
+    }
     for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
     {
       vtkDataObject* leaf = iterator->GetCurrentDataObject();
       auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
-      copy->ShallowCopy(leaf);
+      auto* image = vtkImageData::SafeDownCast(leaf);
+      const bool finer = image && magnify && !failed;
+      if (finer)
+      {
+        noise::Magnify(image, vtkImageData::SafeDownCast(copy), nullptr, this->Magnification);
+      }
+      else
+      {
+        copy->ShallowCopy(leaf);
+      }
+      internals.ImagesAsTheyAre += image && isAMR && this->Magnification > 1;
       composite->SetDataSet(iterator, copy);
       if (auto* dataset = vtkDataSet::SafeDownCast(copy))
       {
-        addBlock(dataset, false);
+        addBlock(dataset, finer ? image : nullptr, false);
       }
       else if (copy->IsA("vtkHyperTreeGrid"))
       {
@@ -695,7 +743,7 @@ int vtkSteerableNoiseFilter::RequestData(
         internals.Why = HyperTreeGridMessage;
       }
     }
-    failed = blocks.empty() && internals.BlocksWithout > 0 && !this->Controller;
+    failed = failed || (blocks.empty() && internals.BlocksWithout > 0 && !this->Controller);
   }
   else
   {
@@ -706,7 +754,10 @@ int vtkSteerableNoiseFilter::RequestData(
     {
       try
       {
-        noise::Magnify(image, vtkImageData::SafeDownCast(output), outInfo, this->Magnification);
+        int extent[6];
+        outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
+        noise::CheckMemory({ image }, this->Magnification);
+        noise::Magnify(image, vtkImageData::SafeDownCast(output), extent, this->Magnification);
       }
       catch (const std::exception& error)
       {
@@ -724,19 +775,7 @@ int vtkSteerableNoiseFilter::RequestData(
       outInfo->Get(SDDP::WHOLE_EXTENT(), wholeExtent);
       whole = wholeExtent;
     }
-    addBlock(dataset, true);
-    if (magnify && !blocks.empty())
-    {
-      Block& block = blocks.back();
-      Block original;
-      original.DataSet = image;
-      std::string why;
-      if (internals.FindArray(original, why) && original.Cells == block.Cells)
-      {
-        block.Original = original.DataSet;
-        block.OriginalArray = original.Array;
-      }
-    }
+    addBlock(dataset, magnify ? image : nullptr, true);
   }
 
   // Everything that ranks do together comes before anything that may fail on one of them.

@@ -289,8 +289,9 @@ public:
 
   ///@{
   /**
-   * Images only: samples per sample of the input along each axis, 1 to 16, default 1. Point arrays are
-   * interpolated linearly, cell arrays are repeated, vectors on cells interpolated for the noise.
+   * Images only, also in composites but those of an AMR, whose levels say how fine they are: samples per sample of
+   * the input along each axis, 1 to 16, default 1. Point arrays are interpolated linearly, cell arrays are
+   * repeated, vectors on cells interpolated for the noise.
    */
   vtkSetClampMacro(Magnification, int, 1, 16);
   vtkGetMacro(Magnification, int);

@@ -519,6 +519,120 @@ TEST(SteerableNoiseDataSets, FlatImagesOfACompositeHaveOneKindOfNoise)
   EXPECT_EQ(block(Apply(two, Straight).Output, 0), Values(Apply(image, Straight).Output));
 }
 
+TEST(SteerableNoiseDataSets, ImagesInCompositesAreMagnified)
+{
+  const auto fine = [](vtkSteerableNoiseFilter* filter)
+  {
+    filter->SetFeatureSize(3.0);
+    filter->SetMagnification(3);
+  };
+  for (const bool cells : { false, true })
+  {
+    const vtkSmartPointer<vtkDataSet> images[] = { MakeImage(12, 9, 1, 1.0, cells), Box(cells) };
+    for (const auto& image : images)
+    {
+      vtkNew<vtkPartitionedDataSet> parts;
+      parts->SetPartition(0, image);
+      vtkNew<vtkPartitionedDataSetCollection> collection;
+      collection->SetPartitionedDataSet(0, parts);
+      const Result result = Apply(collection, fine);
+      auto* output = vtkPartitionedDataSetCollection::SafeDownCast(result.Output);
+      EXPECT_EQ(Values(output->GetPartition(0, 0)), Values(Apply(image, fine).Output));
+      EXPECT_EQ(result.Errors + result.Warnings, 0) << result.Text;
+    }
+  }
+  // Others pass beside them.
+  vtkNew<vtkMultiBlockDataSet> mixed;
+  mixed->SetBlock(0, Box(false));
+  mixed->SetBlock(1, Rectilinear(false));
+  const Result result = Apply(mixed, fine);
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(result.Output);
+  EXPECT_EQ(Values(output->GetBlock(0)).size(), std::size_t(25 * 19 * 16));
+  EXPECT_EQ(Values(output->GetBlock(1)).size(), std::size_t(9 * 7 * 6));
+
+  // All of them together have to fit.
+  vtkNew<vtkMultiBlockDataSet> large;
+  for (unsigned int i = 0; i < 4; ++i)
+  {
+    auto image = Box(false);
+    image->SetDimensions(30000, 30000, 1000); // never filled
+    large->SetBlock(i, image);
+  }
+  const Result refused = Apply(large, [](auto* filter) { filter->SetMagnification(16); });
+  EXPECT_GE(refused.Errors, 1);
+  EXPECT_NE(refused.Text.find("Lower Magnification"), std::string::npos) << refused.Text;
+}
+
+TEST(SteerableNoiseDataSets, MagnificationNamesTheImagesOfAnAMR)
+{
+  vtkNew<vtkNonOverlappingAMR> amr;
+  const int blocks[1] = { 2 };
+  amr->Initialize(1, blocks);
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    vtkNew<vtkUniformGrid> grid;
+    grid->SetDimensions(5, 5, 5);
+    grid->SetOrigin(4.0 * i, 0.0, 0.0);
+    AddFlow(grid, true);
+    amr->SetDataSet(0, i, grid);
+  }
+  const auto configure = [](int magnification)
+  {
+    return [=](vtkSteerableNoiseFilter* filter)
+    {
+      filter->SetFeatureSize(4.0);
+      filter->SetMagnification(magnification);
+    };
+  };
+  const Result plain = Apply(amr, configure(1));
+  const Result fine = Apply(amr, configure(4));
+  EXPECT_EQ(plain.Warnings, 0) << plain.Text;
+  EXPECT_EQ(fine.Warnings, 1);
+  EXPECT_NE(fine.Text.find("leaves the 2 images of an AMR"), std::string::npos) << fine.Text;
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    EXPECT_EQ(Values(vtkNonOverlappingAMR::SafeDownCast(fine.Output)->GetDataSet(0, i)),
+      Values(vtkNonOverlappingAMR::SafeDownCast(plain.Output)->GetDataSet(0, i)));
+  }
+}
+
+TEST(SteerableNoiseDataSets, HiddenCellsDoNotChangeMagnifiedOnes)
+{
+  std::vector<float> noise[2];
+  for (const double left : { 1.0, 50.0 })
+  {
+    auto image = MakeImage(13, 9, 1, 1.0, true);
+    vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    for (int cell = 0; cell < 96; ++cell)
+    {
+      const bool hidden = cell % 12 < 5;
+      ghosts->InsertNextValue(hidden ? vtkDataSetAttributes::REFINEDCELL : 0);
+      if (hidden)
+      {
+        image->GetCellData()->GetVectors()->SetTuple3(cell, -left, left, 0.0);
+      }
+    }
+    image->GetCellData()->AddArray(ghosts);
+    const Result result = Apply(image,
+      [](vtkSteerableNoiseFilter* filter)
+      {
+        filter->SetFeatureSize(4.0);
+        filter->SetMagnification(3);
+      });
+    const std::vector<float> all = Values(result.Output);
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+      if (i % 36 >= 15)
+      {
+        noise[left > 1.0].push_back(all[i]);
+      }
+    }
+  }
+  EXPECT_EQ(noise[0].size(), std::size_t(21 * 24));
+  EXPECT_EQ(noise[0], noise[1]);
+}
+
 TEST(SteerableNoiseDataSets, PatchesOneCellThickInAnAMRAreNotFlat)
 {
   vtkNew<vtkNonOverlappingAMR> amr;

@@ -21,6 +21,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkSMPThreadLocal.h"
 #include "vtkSMPTools.h"
 #include "vtkStaticPointLocator.h"
 #include "vtkUnsignedCharArray.h"
@@ -37,12 +38,32 @@ namespace noise
 {
 namespace
 {
-/// Unit normal of the plane through points (a strip's first three), 0 if there is none.
+/// Unit normal of the plane through points (a strip's first three, a curved cell's corners), 0 if there is none.
 Eigen::Vector3d GetNormal(vtkDataSet* dataset, int cellType, vtkIdList* ids)
 {
-  const vtkIdType count = cellType == VTK_TRIANGLE_STRIP
-    ? std::min<vtkIdType>(3, ids->GetNumberOfIds())
-    : ids->GetNumberOfIds();
+  const auto corners = [&]() -> vtkIdType
+  {
+    switch (cellType)
+    {
+      case VTK_TRIANGLE_STRIP:
+      case VTK_QUADRATIC_TRIANGLE:
+      case VTK_BIQUADRATIC_TRIANGLE:
+      case VTK_LAGRANGE_TRIANGLE:
+      case VTK_BEZIER_TRIANGLE:
+        return 3;
+      case VTK_QUADRATIC_QUAD:
+      case VTK_BIQUADRATIC_QUAD:
+      case VTK_QUADRATIC_LINEAR_QUAD:
+      case VTK_LAGRANGE_QUADRILATERAL:
+      case VTK_BEZIER_QUADRILATERAL:
+        return 4;
+      case VTK_QUADRATIC_POLYGON: // its corners, then the middles of its sides
+        return ids->GetNumberOfIds() / 2;
+      default:
+        return ids->GetNumberOfIds();
+    }
+  };
+  const vtkIdType count = std::min(corners(), ids->GetNumberOfIds());
   // Newell's sum over the edges; a pixel's points are in the order of an image.
   const auto getId = [&](vtkIdType i)
   { return ids->GetId(cellType == VTK_PIXEL && i >= 2 ? 5 - i : i); };
@@ -251,6 +272,21 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
       (this->Cells || !this->Hidden.HasCell(cell));
   };
 
+  // A polygon's sides bend, but VTK takes it for flat inside.
+  const auto isCurved = [&](int type)
+  { return dimensions.IsCurved(type) && type != VTK_QUADRATIC_POLYGON; };
+  vtkSMPThreadLocal<std::shared_ptr<CurvedCell>> curvedCells;
+  const auto getCurved = [&](vtkIdType cell) -> CurvedCell*
+  {
+    if (!isCurved(this->DataSet->GetCellType(cell)))
+    {
+      return nullptr;
+    }
+    std::shared_ptr<CurvedCell>& curved = curvedCells.Local();
+    curved = curved ? curved : std::make_shared<CurvedCell>();
+    return curved->Set(this->DataSet, cell) ? curved.get() : nullptr;
+  };
+
   if (this->Cells)
   {
     vtkSMPTools::For(0, this->DataSet->GetNumberOfCells(), 1024,
@@ -262,8 +298,15 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
           Eigen::Vector3d normal = Eigen::Vector3d::Zero();
           if (isSurface(cell))
           {
-            this->DataSet->GetCellPoints(cell, ids);
-            normal = GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
+            if (CurvedCell* curved = getCurved(cell))
+            {
+              normal = curved->GetNormalAtCenter();
+            }
+            if (normal.isZero(0.0))
+            {
+              this->DataSet->GetCellPoints(cell, ids);
+              normal = GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
+            }
           }
           if (own && !normal.isZero(0.0))
           {
@@ -283,11 +326,17 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
       if (isSurface(cell))
       {
         this->DataSet->GetCellPoints(cell, ids);
-        const Eigen::Vector3d normal =
+        const Eigen::Vector3d flat =
           GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
-        for (vtkIdType i = 0; i < ids->GetNumberOfIds() && !normal.isZero(0.0); ++i)
+        CurvedCell* curved = getCurved(cell);
+        for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
         {
-          sums.Append(shares, ids->GetId(i), normal);
+          Eigen::Vector3d normal = curved ? curved->GetNormal(static_cast<int>(i)) : flat;
+          normal = normal.isZero(0.0) ? flat : normal;
+          if (!normal.isZero(0.0))
+          {
+            sums.Append(shares, ids->GetId(i), normal);
+          }
         }
       }
     });

@@ -1474,6 +1474,69 @@ TEST(SteerableNoiseDataSets, WhatStandsOutIsNotAlwaysAFillValue)
   }
 }
 
+TEST(SteerableNoiseDataSets, CurvedCellsHaveANormalAtEachPoint)
+{
+  // A saddle of degree 2, which all of these cells hold exactly.
+  const auto place = [](double r, double s)
+  { return Eigen::Vector3d(r, s, 0.9 * r * r + 0.4 * r * s - 0.7 * s * s); };
+  const auto normal = [](double r, double s)
+  { return Eigen::Vector3d(-1.8 * r - 0.4 * s, -0.4 * r + 1.4 * s, 1.0).normalized(); };
+  const std::pair<int, int> types[] = { { VTK_QUADRATIC_TRIANGLE, 6 },
+    { VTK_BIQUADRATIC_TRIANGLE, 7 }, { VTK_QUADRATIC_QUAD, 8 }, { VTK_BIQUADRATIC_QUAD, 9 },
+    { VTK_LAGRANGE_TRIANGLE, 6 }, { VTK_LAGRANGE_TRIANGLE, 10 }, { VTK_LAGRANGE_QUADRILATERAL, 9 },
+    { VTK_LAGRANGE_QUADRILATERAL, 25 } };
+  for (const auto& [type, count] : types)
+  {
+    // Where its points are, as VTK has it.
+    const auto any = Cells(type, std::vector<double>(3 * static_cast<std::size_t>(count), 1.0));
+    vtkCell* kind = any->GetCell(0);
+    const double* parameters = kind->GetParametricCoords();
+    std::vector<double> coordinates;
+    for (int i = 0; i < count; ++i)
+    {
+      const Eigen::Vector3d p = place(parameters[3 * i], parameters[3 * i + 1]);
+      coordinates.insert(coordinates.end(), p.data(), p.data() + 3);
+    }
+    double center[3];
+    kind->GetParametricCenter(center);
+    const auto grid = Cells(type, coordinates);
+    for (const bool cells : { false, true })
+    {
+      if (cells)
+      {
+        grid->GetPointData()->Initialize();
+        AddFlow(grid, true);
+      }
+      const Result result = Apply(grid,
+        [](vtkSteerableNoiseFilter* filter)
+        {
+          filter->SetFeatureSize(2.0);
+          filter->FollowCurvatureOff();
+          filter->OutputMetricOn();
+        });
+      auto* output = vtkDataSet::SafeDownCast(result.Output);
+      vtkDataArray* metrics =
+        cells ? output->GetCellData()->GetArray("Metric") : output->GetPointData()->GetArray("Metric");
+      ASSERT_NE(metrics, nullptr);
+      for (vtkIdType i = 0; i < metrics->GetNumberOfTuples(); ++i)
+      {
+        double m[6];
+        metrics->GetTuple(i, m);
+        Eigen::Matrix3d metric;
+        metric << m[0], m[3], m[5], m[3], m[1], m[4], m[5], m[4], m[2];
+        // 0.5 lies along the normal, 1/36 along the flow, and the rest of 3.2 across.
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(metric);
+        EXPECT_NEAR(axes.eigenvalues()[1], 0.5, 1e-5);
+        const Eigen::Vector3d expected = cells ? normal(center[0], center[1])
+                                               : normal(parameters[3 * i], parameters[3 * i + 1]);
+        const double off = axes.eigenvectors().col(1).cross(expected).norm();
+        EXPECT_LT(off, 2e-4) << "type " << type << " of " << count << (cells ? " cell" : " point")
+                             << i;
+      }
+    }
+  }
+}
+
 TEST(SteerableNoiseDataSets, ACreaseKeepsItsNormals)
 {
   // The faces of a cube, and each of them alone.

@@ -351,8 +351,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
       normals->SetTuple(point, tuple);
     }
   }
-  // 40 degrees: facets of a round surface meet below, edges of a body above.
-  CoincidentPoints(this->DataSet, this->Hidden).Share(normals, DirectionSteps, true, 0.766);
+  CoincidentPoints(this->DataSet, this->Hidden).Share(normals, DirectionSteps, true, CreaseCosine);
   // A point of a volume is not on a surface.
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; dimensions.Has(3) && cell < this->DataSet->GetNumberOfCells(); ++cell)

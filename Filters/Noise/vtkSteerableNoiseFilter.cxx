@@ -3,6 +3,7 @@
 #include "vtkSteerableNoiseFilter.h"
 
 #include "NoiseArrays.h"
+#include "NoiseBounds.h"
 #include "NoiseGhosts.h"
 #include "NoiseImages.h"
 #include "NoiseLengths.h"
@@ -10,7 +11,6 @@
 #include "NoiseThreads.h"
 #include "SurfaceFields.h"
 
-#include "vtkBoundingBox.h"
 #include "vtkCellData.h"
 #include "vtkCommunicator.h"
 #include "vtkCompositeDataIterator.h"
@@ -21,7 +21,6 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMath.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -64,58 +63,29 @@ struct Block
 /// What the ranks have to agree on; all of it combines by minimum or sum.
 struct Extremes
 {
-  double Bounds[6]; // lower corner, then the negated upper one
+  noise::CommonBounds Bounds;
   noise::SampleSpacing Spacing;
-
-  Extremes() { std::fill_n(this->Bounds, 6, std::numeric_limits<double>::infinity()); }
 
   /// `exact`: the spacing decides more than a warning.
   void Add(const Block& block, bool exact)
   {
     const noise::HiddenSamples hidden(block.DataSet);
-    if (block.DataSet->GetNumberOfPoints() > 0)
-    {
-      double bounds[6];
-      block.DataSet->GetBounds(bounds);
-      const std::vector<unsigned char>& hiddenPoints = hidden.Get(false);
-      if (!hiddenPoints.empty())
-      {
-        vtkBoundingBox visible;
-        for (vtkIdType point = 0; point < block.DataSet->GetNumberOfPoints(); ++point)
-        {
-          if (!hiddenPoints[point])
-          {
-            visible.AddPoint(block.DataSet->GetPoint(point));
-          }
-        }
-        visible.IsValid() ? visible.GetBounds(bounds) : vtkMath::UninitializeBounds(bounds);
-      }
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        if (bounds[2 * axis] <= bounds[2 * axis + 1] && std::isfinite(bounds[2 * axis]) &&
-          std::isfinite(bounds[2 * axis + 1]))
-        {
-          this->Bounds[axis] = std::min(this->Bounds[axis], bounds[2 * axis]);
-          this->Bounds[3 + axis] = std::min(this->Bounds[3 + axis], -bounds[2 * axis + 1]);
-        }
-      }
-    }
+    this->Bounds.Add(block.DataSet, hidden);
     this->Spacing.Add(block.DataSet, block.Cells, block.Shape.Slab, hidden, exact ? 1000000 : 10000);
   }
 
   void Reduce(vtkMultiProcessController* controller)
   {
+    this->Bounds.Reduce(controller);
     if (!controller || controller->GetNumberOfProcesses() < 2)
     {
       return;
     }
-    double least[9];
-    std::copy_n(this->Bounds, 6, least);
-    std::transform(this->Spacing.Largest, this->Spacing.Largest + 3, least + 6, std::negate<>());
-    double all[9];
-    controller->AllReduce(least, all, 9, vtkCommunicator::MIN_OP);
-    std::copy_n(all, 6, this->Bounds);
-    std::transform(all + 6, all + 9, this->Spacing.Largest, std::negate<>());
+    double least[3];
+    std::transform(this->Spacing.Largest, this->Spacing.Largest + 3, least, std::negate<>());
+    double all[3];
+    controller->AllReduce(least, all, 3, vtkCommunicator::MIN_OP);
+    std::transform(all, all + 3, this->Spacing.Largest, std::negate<>());
     double sums[4];
     std::copy_n(this->Spacing.Sum, 3, sums);
     sums[3] = this->Spacing.Count;
@@ -123,25 +93,6 @@ struct Extremes
     controller->AllReduce(sums, total, 4, vtkCommunicator::SUM_OP);
     std::copy_n(total, 3, this->Spacing.Sum);
     this->Spacing.Count = total[3];
-  }
-
-  /// Side of the bounds along an axis, 0 if there is none.
-  double GetSide(int axis) const
-  {
-    const double side = -this->Bounds[3 + axis] - this->Bounds[axis];
-    return std::isfinite(side) ? side : 0.0;
-  }
-
-  /**
-   * The largest size of which a picture of the whole shows enough: an eighth of the second longest side of
-   * the bounds. The longest may have another unit (metres of depth beside degrees), and one of less than
-   * a ten-thousandth of it is not seen.
-   */
-  double GetLargestSize() const
-  {
-    double sides[3] = { this->GetSide(0), this->GetSide(1), this->GetSide(2) };
-    std::sort(sides, sides + 3, std::greater<>());
-    return 0.125 * (sides[1] > 1e-4 * sides[0] ? sides[1] : sides[0]);
   }
 
   /**
@@ -153,7 +104,7 @@ struct Extremes
   {
     double spacing[3];
     double smallest = std::numeric_limits<double>::infinity();
-    const double longest = std::max({ this->GetSide(0), this->GetSide(1), this->GetSide(2) });
+    const double longest = this->Bounds.GetLongestSide();
     for (int axis = 0; axis < 3; ++axis)
     {
       double mean = this->Spacing.Count > 0.0 ? this->Spacing.Sum[axis] / this->Spacing.Count : 0.0;
@@ -163,12 +114,12 @@ struct Extremes
         mean = std::round(mean / unit) * unit;
       }
       spacing[axis] = std::max(mean, this->Spacing.Largest[axis]);
-      if (spacing[axis] > 0.0 && this->GetSide(axis) > 1e-4 * longest)
+      if (spacing[axis] > 0.0 && this->Bounds.GetSide(axis) > 1e-4 * longest)
       {
         smallest = std::min(smallest, spacing[axis]);
       }
     }
-    const double most = std::max(0.25 * this->GetLargestSize(), 2.0 * smallest);
+    const double most = std::max(0.25 * this->Bounds.GetLargestSize(), 2.0 * smallest);
     double largest = 0.0;
     for (const double here : spacing)
     {
@@ -177,36 +128,12 @@ struct Extremes
     return largest;
   }
 
-  /// The coordinate plane that all data lie in; x and y if there is none.
-  noise::Plane GetPlane() const
-  {
-    const double longest = std::max({ this->GetSide(0), this->GetSide(1), this->GetSide(2) });
-    const auto flat = [&](int axis) { return this->GetSide(axis) <= 1e-6 * longest; };
-    if (flat(2) || flat(0) == flat(1))
-    {
-      return noise::WorldPlane;
-    }
-    return { flat(0) ? 1 : 0, 2 };
-  }
-
   /// The smallest FeatureSize that the samples carry; 0 if they are nowhere.
-  double GetSmallestSize() const { return Snap(4.0 * this->GetSampleSpacing()); }
+  double GetSmallestSize() const { return noise::SnapSize(4.0 * this->GetSampleSpacing()); }
 
   double GetAutomaticSize() const
   {
-    const double diagonal = std::hypot(this->GetSide(0), this->GetSide(1), this->GetSide(2));
-    return std::max(
-      Snap(std::min(0.01 * diagonal, this->GetLargestSize())), this->GetSmallestSize());
-  }
-
-private:
-  /**
-   * The nearest power of the fourth root of 2: sizes that differ a little, between the steps of a series or
-   * the places of a slice, become the same, and streaks stay where they are.
-   */
-  static double Snap(double size)
-  {
-    return size > 0.0 ? std::exp2(std::round(4.0 * std::log2(size)) / 4.0) : 0.0;
+    return std::max(this->Bounds.GetSizeInPicture(0.01), this->GetSmallestSize());
   }
 };
 
@@ -823,7 +750,7 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
     {
-      internals.Process(blocks[i], parameters, extremes.GetPlane(), lengths.Limit,
+      internals.Process(blocks[i], parameters, extremes.Bounds.GetPlane(), lengths.Limit,
         blocks[i].Original ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
         1.0 / blocks.size());
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseArrays.h"
 
+#include "SteeringChoice.h"
 #include "SurfaceFields.h"
 
 #include "vtkArrayDispatch.h"
@@ -16,7 +17,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -372,25 +372,63 @@ double GetLargestComponent(vtkDataArray* array, vtkIdType index)
   return largest;
 }
 
-vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)
+namespace
 {
-  if (vtkDataArray* vectors = attributes->GetVectors())
+ArrayFacts FactsOf(vtkDataSetAttributes* attributes, int index)
+{
+  ArrayFacts facts;
+  if (vtkDataArray* array = attributes->GetArray(index)) // not strings
   {
-    return vectors;
+    facts.Name = array->GetName() ? array->GetName() : "";
+    facts.DataType = array->GetDataType();
+    facts.Components = array->GetNumberOfComponents();
+    facts.Attribute = attributes->IsArrayAnAttribute(index);
   }
-  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  return facts;
+}
+} // namespace
+
+bool MaySteer(const ArrayFacts& array)
+{
+  return array.Attribute != vtkDataSetAttributes::NORMALS &&
+    array.Attribute != vtkDataSetAttributes::TCOORDS && array.DataType != VTK_UNSIGNED_CHAR;
+}
+
+int ChooseArray(const std::vector<ArrayFacts>& arrays)
+{
+  const auto active = [&](int attribute)
   {
-    vtkDataArray* array = attributes->GetArray(i);
-    const bool isReal =
-      array && (array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE);
-    if (isReal && array->GetNumberOfComponents() == 3 && array != attributes->GetNormals() &&
-      array != attributes->GetTCoords() &&
-      (!array->GetName() || std::strcmp(array->GetName(), "Normals") != 0))
+    const auto found = std::find_if(arrays.begin(), arrays.end(),
+      [=](const ArrayFacts& array) { return array.Attribute == attribute; });
+    return found != arrays.end() ? static_cast<int>(found - arrays.begin()) : -1;
+  };
+  int chosen = active(vtkDataSetAttributes::VECTORS);
+  if (chosen >= 0)
+  {
+    return chosen;
+  }
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    const ArrayFacts& array = arrays[i];
+    const bool isReal = array.DataType == VTK_FLOAT || array.DataType == VTK_DOUBLE;
+    if (isReal && array.Components == 3 && MaySteer(array) && array.Name != "Normals" &&
+      (chosen < 0 || array.Name < arrays[static_cast<std::size_t>(chosen)].Name))
     {
-      return array;
+      chosen = static_cast<int>(i);
     }
   }
-  return attributes->GetTensors();
+  return chosen >= 0 ? chosen : active(vtkDataSetAttributes::TENSORS);
+}
+
+vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)
+{
+  std::vector<ArrayFacts> arrays;
+  for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
+  {
+    arrays.push_back(FactsOf(attributes, i));
+  }
+  const int chosen = ChooseArray(arrays);
+  return chosen >= 0 ? attributes->GetArray(chosen) : nullptr;
 }
 
 vtkDataArray* FindSteeringArray(
@@ -418,8 +456,12 @@ vtkDataArray* FindSteeringArray(
     const int components = array->GetNumberOfComponents();
     const vtkIdType samples = onCells ? dataset->GetNumberOfCells() : dataset->GetNumberOfPoints();
     // Chosen by default in a panel when nothing better is there, but no flow.
-    if (array == attributes->GetNormals() || array == attributes->GetTCoords() ||
-      array->GetDataType() == VTK_UNSIGNED_CHAR)
+    ArrayFacts facts;
+    facts.DataType = array->GetDataType();
+    facts.Attribute = array == attributes->GetNormals() ? vtkDataSetAttributes::NORMALS
+      : array == attributes->GetTCoords()               ? vtkDataSetAttributes::TCOORDS
+                                                        : -1;
+    if (!MaySteer(facts))
     {
       message << "holds normals, texture coordinates or colours, not vectors. Choose another one, or copy "
                  "it with the Calculator if it is meant.";

@@ -75,8 +75,7 @@ void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, doub
 double GetLargestComponent(vtkDataArray* array, vtkIdType index);
 
 /**
- * The array that steers the noise when nobody named one: active vectors, else the first floating-point
- * array of 3 components that is neither normals nor texture coordinates, else active tensors.
+ * The array that steers the noise when nobody named one, as ChooseArray (SteeringChoice.h) has it.
  */
 vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes);
 } // namespace noise

@@ -543,8 +543,9 @@ TEST(PolyDataSubbandNoise, HiddenPartsDoNotCount)
       ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
       ghosts->SetNumberOfTuples(byPoint ? mesh->GetNumberOfPoints() : mesh->GetNumberOfCells());
       ghosts->Fill(0);
-      ghosts->SetValue(byPoint ? 64 : 63,
-        byPoint ? vtkDataSetAttributes::HIDDENPOINT : vtkDataSetAttributes::HIDDENCELL);
+      const int hidden = byPoint ? int(vtkDataSetAttributes::HIDDENPOINT)
+                                 : int(vtkDataSetAttributes::HIDDENCELL);
+      ghosts->SetValue(byPoint ? 64 : 63, static_cast<unsigned char>(hidden));
       (byPoint ? static_cast<vtkFieldData*>(mesh->GetPointData()) : mesh->GetCellData())
         ->AddArray(ghosts);
       vtkNew<vtkPolyDataSubbandNoise> filter;

@@ -30,6 +30,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -420,6 +421,39 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
   return normals;
 }
 
+bool Samples::DoCellsMeet(int axis, vtkIdType cell) const
+{
+  int dims[3];
+  GetDimensions(this->DataSet, dims);
+  const vtkIdType strides[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };
+  vtkIdType corner = 0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const vtkIdType cells = std::max(dims[i] - 1, 1);
+    corner += cell % cells * strides[i];
+    cell /= cells;
+  }
+  // The side of the first cell is that of the last one.
+  const int other[2] = { (axis + 1) % 3, (axis + 2) % 3 };
+  for (int n = 0; n < 4; ++n)
+  {
+    const bool along[2] = { (n & 1) != 0, (n & 2) != 0 };
+    vtkIdType first = corner;
+    for (int i = 0; i < 2; ++i)
+    {
+      first += along[i] && dims[other[i]] > 1 ? strides[other[i]] : 0;
+    }
+    Eigen::Vector3d places[2];
+    this->DataSet->GetPoint(first, places[0].data());
+    this->DataSet->GetPoint(first + (dims[axis] - 1) * strides[axis], places[1].data());
+    if (!AreSamePlaces(places[0], places[1]))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 void Samples::ComputeCurvature(double featureSize)
 {
   const vtkIdType count = this->GetNumberOfSamples();
@@ -434,9 +468,13 @@ void Samples::ComputeCurvature(double featureSize)
     {
       samples = this->Cells ? std::max(samples - 1, 1) : samples;
     }
-    this->Curvature =
-      ComputeStreamlineCurvature(
-      dimensions, *this->Positions, *this->Field.Vectors, this->LeftOut);
+    std::function<bool(int, vtkIdType)> cellsMeet;
+    if (this->Cells)
+    {
+      cellsMeet = [this](int axis, vtkIdType cell) { return this->DoCellsMeet(axis, cell); };
+    }
+    this->Curvature = ComputeStreamlineCurvature(
+      dimensions, *this->Positions, *this->Field.Vectors, this->LeftOut, cellsMeet);
   }
   else
   {

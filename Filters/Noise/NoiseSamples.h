@@ -72,6 +72,8 @@ private:
   void SetGrid(vtkImageData* image);
   void SetPoints();
   void SetLeftOut(double limit);
+  /// Whether a structured grid is closed along an axis at the row with this first cell.
+  bool DoCellsMeet(int axis, vtkIdType cell) const;
   /// Unit normals of samples on cells of dimension 2, 0 for the others; null if all are.
   vtkSmartPointer<vtkFloatArray> ComputeNormals() const;
   vtkSmartPointer<vtkFloatArray> ComputeSlabNormals() const;

@@ -4,8 +4,8 @@ Usage: pvpython Utilities/animate.py DATA OUTPUT_FOLDER [frames, 24]
 DATA is any file that ParaView opens, with vectors. STEERABLENOISE_PLUGIN names the plugin; without it
 the plugin has to be one that ParaView loads by itself (PV_PLUGIN_PATH).
 
-The frames are one loop: frame_0000.png follows the last one. Encoders make a film of them, for example
-ffmpeg -stream_loop 3 -framerate 12 -i frame_%04d.png -pix_fmt yuv420p wake.mp4
+The frames are one loop: frame.0000.png follows the last one. Encoders make a film of them, for example
+ffmpeg -stream_loop 3 -framerate 12 -i frame.%04d.png -pix_fmt yuv420p wake.mp4
 """
 import os
 import sys
@@ -67,6 +67,7 @@ scene.NumberOfFrames = frames
 scene.StartTime = 0.0
 scene.EndTime = 1.0 - 1.0 / frames
 os.makedirs(folder, exist_ok=True)
+# ParaView numbers them: frame.0000.png. (How a format for that is written differs from version to version.)
 path = os.path.join(folder, "frame.png")
-SaveAnimation(path, view, FrameWindow=[0, frames - 1], SuffixFormat="_%04d")
-print("%d frames: %s" % (frames, os.path.join(folder, "frame_0000.png")))
+SaveAnimation(path, view, FrameWindow=[0, frames - 1])
+print("%d frames: %s" % (frames, os.path.join(folder, "frame.0000.png")))

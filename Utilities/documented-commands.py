@@ -1,10 +1,9 @@
-"""The commands of the documentation as one shell script, to be run in the project's root.
+"""The commands of the documentation as one shell script, to be run in the project's root by documented-commands.sh.
 
-Usage: python3 documented-commands.py FILE.md... | bash -eux
+Usage: python3 documented-commands.py FILE.md... >SCRIPT
 
-Every line of a fenced block without a language is a command and is taken as it is written. A python block after
-"save this as `NAME`" is written to the file NAME first. Left out are demo.sh and test.sh without options, which
-fresh.sh runs as steps of their own, and what SKIPPED names.
+Every line of a fenced block without a language is a command and is taken as it is written; the script ends where one
+fails. A python block after "save this as `NAME`" is written to the file NAME first. Left out is what SKIPPED names.
 """
 import re
 import sys
@@ -29,7 +28,8 @@ def script(text):
             for line in block[2].splitlines():
                 command = re.sub(r"\s+#.*", "", line).strip()
                 reason = SKIPPED.get(command)
-                yield f"# {command}: {reason}" if reason else line
+                # Not by "set -e", which does not see what fails before "&&".
+                yield f"# {command}: {reason}" if reason else f"{{ {line}\n}} || exit 1"
 
 
 for path in sys.argv[1:]:

@@ -3,44 +3,46 @@
 # Makes a minimal Debian in a temporary folder, copies the tree (and ../shared if there) in, and runs the
 # README's two commands as root, the first once more as a user with sudo, and then every command line of the
 # documentation. Prints a line for each step, and the end of a step's log where it fails. Needs root, 10 GB
-# and some minutes; downloads what a new machine would.
+# and a quarter of an hour; downloads what a new machine would. Exit status 77: it cannot be tried on this
+# machine, for the reason that it prints.
 #
 # FRESH_TEST_OPTIONS: options for ctest in the fresh system, such as "-R Kernel"; none: all tests.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 suite=${1:-}
+needed=10 # GB
 
 stop() {
   echo "fresh.sh: $*" >&2
   exit 1
 }
 
-# --- Inside: a mount and process namespace of its own (see the end of the file) ---------------------------
-
-# step "what" command...: one line, with the log's end on failure.
-step() {
-  local what=$1 start=$SECONDS log=$scratch/log
-  shift
-  if "$@" >"$log" 2>&1 </dev/null; then
-    echo "$suite: $what: ok, $((SECONDS - start)) s"
-  else
-    echo "$suite: $what: FAILED after $((SECONDS - start)) s; the end of its log:"
-    tail -n 60 "$log"
-    exit 1
-  fi
-}
-
 # apt's own view of where Debian's packages come from on this machine: lines "URI release component".
 archives() {
   apt-get indextargets --format '$(REPO_URI) $(RELEASE) $(COMPONENT)' "Created-By: Packages" "Origin: Debian"
 }
+main_archive() {
+  archives | awk '$2 !~ /-/ {print $1; exit}'
+}
+
+# --- Inside: a mount and process namespace of its own (see the end of the file) ---------------------------
+
+# step "what" command...: one line, with the log's end on failure. Processor time says more than time where
+# others use the machine.
+step() {
+  local what=$1 start=$SECONDS log=$scratch/log result=ok seconds TIMEFORMAT='%U %S'
+  shift
+  { time "$@" >"$log" 2>&1 </dev/null; } 2>"$scratch/time" || result=FAILED
+  seconds="$((SECONDS - start)) s, of the processor $(awk '{printf "%.0f", $1 + $2}' "$scratch/time") s"
+  echo "$suite: $what: $result, $seconds"
+  [ "$result" = ok ] || { echo "The end of its log:"; tail -n 60 "$log"; exit 1; }
+}
 
 make_system() {
   local main security components options=(--variant=minbase --include=ca-certificates) sources
-  main=$(archives | awk '$2 !~ /-/ {print $1; exit}')
+  main=$(main_archive)
   security=$(archives | awk '$2 ~ /-security$/ {print $1; exit}')
   components=$(archives | awk '$2 !~ /-/ {print $3}' | sort -u | paste -sd ' ')
-  [ "$main" ] || stop "apt has no Debian archive configured; see apt-get indextargets"
   sources=("deb $main $suite $components")
   # sid has no security suite.
   [ -z "$security" ] || [ "$suite" = sid ] || sources+=("deb $security $suite-security $components")
@@ -60,6 +62,7 @@ make_system() {
 mount_system() {
   local device
   mount -t proc proc "$system/proc"
+  mount -t sysfs -o ro sysfs "$system/sys"
   mount -t tmpfs -o mode=755 tmpfs "$system/dev"
   mkdir "$system/dev/shm" "$system/dev/pts"
   mount -t tmpfs -o mode=1777 tmpfs "$system/dev/shm"
@@ -91,7 +94,8 @@ in_system() {
 copy_tree() {
   local home=$system$1
   mkdir -p "$home/project" &&
-    (cd "$root" && git ls-files -z | tar --null --files-from=- -c) | tar -x --no-same-owner -C "$home/project" &&
+    (cd "$root" && git -c safe.directory="$root" ls-files -z | tar --null --files-from=- -c) |
+    tar -x --no-same-owner -C "$home/project" &&
     { [ ! -d "$root/../shared" ] || cp -r "$root/../shared" "$home/shared"; }
 }
 
@@ -119,8 +123,7 @@ inside() {
   echo "$suite: $(grep -hE 'tests passed|tests failed' "$scratch/log" || echo "no summary of ctest")"
   grep -hE '\*\*\*(Skipped|Not Run)|\(Skipped\)' "$scratch/log" | sed "s/^/$suite: /" || true
   # test.sh has the tests built; what documentation says is run beside it, in the same folder.
-  step "commands of the documentation" in_system root bash -c 'set -o pipefail
-    python3 Utilities/documented-commands.py README.md Documentation/user-guide.md Documentation/contributing.md | bash -eux'
+  step "commands of the documentation" in_system root bash Utilities/documented-commands.sh
   echo "$suite: $(in_system root pvpython --version 2>&1 | tail -n 1), $(du -shx "$system" | cut -f1) in all"
 }
 
@@ -137,13 +140,21 @@ case $suite in
   bookworm | trixie | sid) ;;
   *) stop "usage: bash Utilities/fresh.sh bookworm|trixie|sid" ;;
 esac
-[ "$(id -u)" = 0 ] || stop "must be root: it makes a system with owners and devices of its own"
-if ! command -v mmdebstrap >/dev/null; then
-  { apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends mmdebstrap; } \
-    >/dev/null 2>&1 || stop "cannot install mmdebstrap, which makes the minimal system"
-fi
-unshare --mount --pid --fork --propagation private sh -c 'mount -t tmpfs tmpfs /mnt' 2>/dev/null ||
-  stop "this machine does not allow namespaces of mounts (unshare --mount): no fresh system can be made here"
+cannot() {
+  echo "$suite: not tried on a fresh system: $*"
+  exit 77
+}
+free=$(($(df --output=avail -k "${TMPDIR:-/tmp}" | tail -n 1) / 1000000))
+[ "$free" -ge "$needed" ] || cannot "$free GB free in ${TMPDIR:-/tmp}, $needed needed"
+[ "$(id -u)" = 0 ] || cannot "only root can make a system with owners and devices of its own"
+unshare --mount --pid --fork --propagation private sh -c \
+  'mount -t tmpfs tmpfs /mnt && mount -t proc proc /proc && mknod /mnt/null c 1 3 && : >/mnt/null && chroot / true' \
+  2>/dev/null || cannot "this machine does not allow mounts and devices in a namespace of its own"
+[ "$(main_archive)" ] || apt-get update -qq >/dev/null 2>&1 || true
+[ "$(main_archive)" ] || cannot "apt knows no archive of Debian on this machine"
+command -v mmdebstrap >/dev/null || {
+  apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends mmdebstrap
+} >/dev/null 2>&1 || cannot "mmdebstrap, which makes the minimal system, cannot be installed"
 
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/fresh-$suite-XXXXXX")
 child=
@@ -160,6 +171,8 @@ clean() {
 trap clean EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM HUP
+/usr/lib/apt/apt-helper download-file "$(main_archive)dists/$suite/InRelease" "$scratch/InRelease" >/dev/null 2>&1 ||
+  cannot "$(main_archive) cannot be reached, or has no $suite"
 STEERABLENOISE_FRESH_SCRATCH=$scratch unshare --mount --pid --fork --kill-child --propagation private \
   bash "${BASH_SOURCE[0]}" "$suite" &
 child=$!

@@ -10,6 +10,7 @@
 #include "vtkAppendFilter.h"
 #include "vtkCellArray.h"
 #include "vtkCellType.h"
+#include "vtkCompositeDataIterator.h"
 #include "vtkDataSetTriangleFilter.h"
 #include "vtkExecutive.h"
 #include "vtkExplicitStructuredGrid.h"
@@ -29,6 +30,7 @@
 #include "vtkSphereSource.h"
 #include "vtkSteerableNoiseFilter.h"
 #include "vtkStringArray.h"
+#include "vtkStructuredData.h"
 #include "vtkStructuredGrid.h"
 #include "vtkTransform.h"
 #include "vtkTransformFilter.h"
@@ -36,6 +38,7 @@
 #include "vtkUniformGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
+#include "vtkVersion.h"
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -675,43 +678,51 @@ TEST(SteerableNoiseDataSets, PatchesOneCellThickInAnAMRAreNotFlat)
 
 TEST(SteerableNoiseDataSets, AMRKeepsItsStructure)
 {
+  const std::vector<unsigned int> blocks = { 1, 2 };
   vtkNew<vtkOverlappingAMR> amr;
-  const int blocks[2] = { 1, 2 };
-  amr->Initialize(2, blocks);
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+  amr->Initialize(blocks);
+#else // VTK 9.6 has deprecated this one, earlier versions have no other.
+  amr->Initialize(2, std::vector<int>(blocks.begin(), blocks.end()).data());
+#endif
   const double origin[3] = { 0, 0, 0 };
   amr->SetOrigin(origin);
-  amr->SetGridDescription(VTK_XYZ_GRID);
-  for (int level = 0; level < 2; ++level)
+  int dimensions[3] = { 9, 9, 9 };
+  amr->SetGridDescription(vtkStructuredData::GetDataDescription(dimensions));
+  std::vector<vtkSmartPointer<vtkUniformGrid>> grids;
+  for (unsigned int level = 0; level < 2; ++level)
   {
     const double h = level == 0 ? 1.0 : 0.5;
     const double spacing[3] = { h, h, h };
     amr->SetSpacing(level, spacing);
-    for (int block = 0; block < blocks[level]; ++block)
+    for (unsigned int block = 0; block < blocks[level]; ++block)
     {
-      vtkNew<vtkUniformGrid> grid;
+      auto grid = vtkSmartPointer<vtkUniformGrid>::New();
       grid->SetOrigin(block * 4.0, 0, 0);
       grid->SetSpacing(spacing);
-      grid->SetDimensions(9, 9, 9);
+      grid->SetDimensions(dimensions);
       AddFlow(grid, true);
-      const vtkAMRBox box(grid->GetOrigin(), grid->GetDimensions(), spacing, origin, VTK_XYZ_GRID);
-      amr->SetAMRBox(level, block, box);
+      amr->SetAMRBox(level, block, vtkAMRBox(grid->GetOrigin(), dimensions, spacing, origin));
       amr->SetDataSet(level, block, grid);
+      grids.push_back(grid);
     }
   }
   const Result result = Apply(amr);
   EXPECT_EQ(result.Errors, 0) << result.Text;
   auto* output = vtkOverlappingAMR::SafeDownCast(result.Output);
   ASSERT_NE(output, nullptr);
-  for (int level = 0; level < 2; ++level)
+  ASSERT_EQ(output->GetNumberOfLevels(), 2u);
+  std::size_t found = 0;
+  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(output->NewIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem(), ++found)
   {
-    for (int block = 0; block < blocks[level]; ++block)
-    {
-      const std::vector<float> values = Values(output->GetDataSet(level, block));
-      EXPECT_EQ(values.size(), 512u);
-      EXPECT_TRUE(AllFinite(values));
-    }
+    const std::vector<float> values =
+      Values(vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject()));
+    EXPECT_EQ(values.size(), 512u);
+    EXPECT_TRUE(AllFinite(values));
   }
-  EXPECT_EQ(amr->GetDataSet(0, 0)->GetCellData()->GetArray("SteerableNoise"), nullptr);
+  EXPECT_EQ(found, grids.size());
+  EXPECT_EQ(grids.front()->GetCellData()->GetArray("SteerableNoise"), nullptr);
 }
 
 TEST(SteerableNoiseDataSets, CompositesWithPartialArrays)

@@ -28,7 +28,7 @@ with tempfile.TemporaryDirectory() as folder:
     sys.argv = ["animate.py", pt.WAKE, folder, str(FRAMES)]
     made = runpy.run_path(os.path.join(pt.SOURCE, "Utilities", "animate.py"))
     noise, view = made["noise"], made["view"]
-    paths = [os.path.join(folder, "frame_%04d.png" % i) for i in range(FRAMES)]
+    paths = [os.path.join(folder, "frame.%04d.png" % i) for i in range(FRAMES)]
     pt.check(sorted(os.listdir(folder)) == [os.path.basename(p) for p in paths], "the frames that were asked for")
     frames = [pixels(path) for path in paths]
     pt.check(min(frame.std() for frame in frames) > 20, "noise in every frame")

@@ -70,12 +70,6 @@ def save(name, mesh):
     numpy.save(os.path.join(folder, "%s.%d.%d.npy" % (name, ranks, rank)), numpy.array(rows).reshape(-1, 4))
 
 
-def thirds(places):
-    """Slabs along x, one for each rank."""
-    order = numpy.argsort(numpy.argsort(places[:, 0], kind="stable"), kind="stable")
-    return order * ranks // len(places)
-
-
 def all_on_first(places):
     return numpy.zeros(len(places), dtype=int)
 
@@ -92,11 +86,11 @@ def surfaces():
     sphere.SetThetaResolution(96)
     sphere.SetPhiResolution(48)
     sphere.Update()
-    yield "sphere", sphere.GetOutput(), thirds, None
+    yield "sphere", sphere.GetOutput(), pt.slabs, None
     yield "lonely", sphere.GetOutput(), all_on_first, None
     if os.path.exists(os.path.join(pt.SHARED, "spot.vtp")):
-        yield "spot", read("spot.vtp"), thirds, None
-        yield "wind", read("gfs_wind_sphere.vtp"), thirds, "wind"
+        yield "spot", read("spot.vtp"), pt.slabs, None
+        yield "wind", read("gfs_wind_sphere.vtp"), pt.slabs, "wind"
 
 
 # The class, on pieces made here. Wavelength 0 is agreed on.
@@ -111,11 +105,9 @@ for name, mesh, owner, vectors in surfaces():
     if output.GetNumberOfPoints():
         save(name, output)
 
-# The proxy, on pieces of ParaView's own with its ghost cells. The reader leaves all to one rank.
+# The proxy, with ParaView's own ghost cells.
 if os.path.exists(os.path.join(pt.SHARED, "gfs_wind_sphere.vtp")):
-    source = simple.OpenDataFile(os.path.join(pt.SHARED, "gfs_wind_sphere.vtp"))
-    source = simple.RedistributeDataSet(Input=source)
-    source = simple.ExtractSurface(Input=source)
+    source = simple.ExtractSurface(Input=pt.distributed(read("gfs_wind_sphere.vtp")))
     # Renamed after 5.11.
     ghosts = getattr(simple, "GhostCells", None) or simple.GhostCellsGenerator
     source = ghosts(Input=source)
@@ -123,6 +115,6 @@ if os.path.exists(os.path.join(pt.SHARED, "gfs_wind_sphere.vtp")):
     simple.UpdatePipeline(proxy=noise)
     for i, leaf in enumerate(pt.leaves(noise.GetClientSideObject().GetOutputDataObject(0))):
         if leaf.GetNumberOfPoints():
-            save("redistributed_%d" % i, leaf)
+            save("ghosts_%d" % i, leaf)
 
 print("rank %d of %d done" % (rank, ranks))

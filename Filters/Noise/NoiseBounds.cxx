@@ -3,6 +3,7 @@
 #include "NoiseBounds.h"
 
 #include "NoiseGhosts.h"
+#include "SurfaceFields.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCommunicator.h"
@@ -102,6 +103,20 @@ double CommonBounds::GetLargestSize() const
 double CommonBounds::GetSizeInPicture(double share) const
 {
   return SnapSize(std::min(share * this->GetDiagonal(), 100.0 * share * this->GetLargestSize()));
+}
+
+double CommonBounds::GetFeatureSize(double sampleSpacing) const
+{
+  const double size =
+    std::max(this->GetSizeInPicture(0.01), GetSmallestFeatureSize(sampleSpacing));
+  return size > 0.0 ? size : 1.0;
+}
+
+double GetAutomaticFeatureSize(const double (&bounds)[6], double sampleSpacing)
+{
+  CommonBounds common;
+  common.Add(bounds);
+  return common.GetFeatureSize(sampleSpacing);
 }
 
 Plane CommonBounds::GetPlane() const

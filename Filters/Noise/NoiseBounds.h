@@ -21,6 +21,12 @@ class HiddenSamples;
  */
 double SnapSize(double size);
 
+/// The smallest FeatureSize that samples carry which are so far apart.
+inline double GetSmallestFeatureSize(double sampleSpacing)
+{
+  return SnapSize(4.0 * sampleSpacing);
+}
+
 class CommonBounds
 {
 public:
@@ -47,6 +53,9 @@ public:
 
   /// A `share` of the diagonal, no more than GetLargestSize() times 100 `share`, snapped.
   double GetSizeInPicture(double share) const;
+
+  /// Automatic FeatureSize for samples that are so far apart: 1/100 of the diagonal, and no finer than they carry.
+  double GetFeatureSize(double sampleSpacing) const;
 
   /// The coordinate plane that all data lie in; x and y if there is none.
   Plane GetPlane() const;

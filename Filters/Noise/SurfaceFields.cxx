@@ -4,6 +4,7 @@
 
 #include "CellSums.h"
 #include "NoiseArrays.h"
+#include "NoiseGhosts.h"
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
 
@@ -14,7 +15,6 @@
 #include "vtkMath.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <Eigen/Core>
 
@@ -29,18 +29,6 @@ namespace
 {
 constexpr float NaN = std::numeric_limits<float>::quiet_NaN();
 
-/// Length of a vector, or Frobenius norm of a tensor of 6 components.
-double GetLength(const float* tuple, int components)
-{
-  double squares = 0.0;
-  for (int c = 0; c < components; ++c)
-  {
-    // Off the diagonal of a tensor each component stands twice.
-    squares += (c < 3 ? 1.0 : 2.0) * double(tuple[c]) * double(tuple[c]);
-  }
-  return std::sqrt(squares);
-}
-
 /// The array as floats of 3 or 6 components, divided by the longest; what is not finite becomes NaN.
 void SetSteering(SurfaceFields& fields, vtkDataArray* array)
 {
@@ -53,30 +41,31 @@ void SetSteering(SurfaceFields& fields, vtkDataArray* array)
   float* steering = fields.Steering->GetPointer(0);
   double longest = 0.0;
   constexpr vtkIdType chunk = 4096;
+  std::vector<double> lengths(static_cast<std::size_t>(count));
   for (vtkIdType first = 0; first < count; first += chunk)
   {
-    const vtkIdType size = std::min(chunk, count - first);
-    float* out = steering + components * first;
-    const float* read =
-      reader->Read(static_cast<std::size_t>(first), static_cast<std::size_t>(size), out);
+    const auto begin = static_cast<std::size_t>(first);
+    const auto size = static_cast<std::size_t>(std::min(chunk, count - first));
+    float* out = steering + components * begin;
+    const float* read = reader->Read(begin, size, out);
     if (read != out)
     {
       std::copy(read, read + components * size, out);
     }
-    for (vtkIdType i = 0; i < size; ++i)
-    {
-      const double length = GetLength(out + components * i, components);
-      longest = std::isfinite(length) ? std::max(longest, length) : longest;
-    }
+    ReadLengths(fields.Steering, begin, size, lengths.data() + begin);
+  }
+  for (const double length : lengths)
+  {
+    longest = std::isfinite(length) ? std::max(longest, length) : longest;
   }
   fields.Longest = longest > 0.0 ? longest : 1.0;
-  for (vtkIdType i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < lengths.size(); ++i)
   {
     float* tuple = steering + components * i;
-    const bool finite = std::isfinite(GetLength(tuple, components));
     for (int c = 0; c < components; ++c)
     {
-      tuple[c] = finite ? static_cast<float>(tuple[c] / fields.Longest) : NaN;
+      tuple[c] =
+        std::isfinite(lengths[i]) ? static_cast<float>(tuple[c] / fields.Longest) : NaN;
     }
   }
 }
@@ -87,12 +76,9 @@ vtkSmartPointer<vtkFloatArray> CellsToPoints(vtkPolyData* surface, vtkFloatArray
   const int components = cells->GetNumberOfComponents();
   const vtkIdType count = surface->GetNumberOfPoints();
   auto points = NewOutputArray("Steering", components, count);
-  vtkUnsignedCharArray* ghosts = surface->GetCellGhostArray();
+  const HiddenSamples hidden(surface);
   const auto counts = [&](vtkIdType cell)
-  {
-    return !std::isnan(cells->GetValue(components * cell)) &&
-      !(ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::HIDDENCELL));
-  };
+  { return !std::isnan(cells->GetValue(components * cell)) && !hidden.HasCell(cell); };
   const CellDimensions dimensions(surface); // threads may ask for cells from here on
   for (int part = 0; part < components; part += 3)
   {

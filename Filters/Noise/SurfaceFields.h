@@ -48,6 +48,13 @@ STEERABLENOISEFILTERS_EXPORT SurfaceFields ComputeSurfaceFields(
   vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell);
 
 /**
+ * The FeatureSize that vtkSteerableNoiseFilter takes by itself, in world units, for data with these bounds over all
+ * blocks and ranks. `sampleSpacing`: how far apart samples are; 0 where noise does not depend on them.
+ */
+STEERABLENOISEFILTERS_EXPORT double GetAutomaticFeatureSize(
+  const double (&bounds)[6], double sampleSpacing = 0.0);
+
+/**
  * The array of a dataset that steers noise, as vtkAlgorithm::SetInputArrayToProcess chose it in `choice`, on
  * the association that was asked for or else on the other; `cells` tells on which. Where no name was given:
  * the choice of SteeringChoice.h. Null, with `why` in a

@@ -129,11 +129,9 @@ struct Extremes
   }
 
   /// The smallest FeatureSize that the samples carry; 0 if they are nowhere.
-  double GetSmallestSize() const { return noise::SnapSize(4.0 * this->GetSampleSpacing()); }
-
-  double GetAutomaticSize() const
+  double GetSmallestSize() const
   {
-    return std::max(this->Bounds.GetSizeInPicture(0.01), this->GetSmallestSize());
+    return noise::GetSmallestFeatureSize(this->GetSampleSpacing());
   }
 };
 
@@ -392,7 +390,7 @@ struct vtkSteerableNoiseFilter::Internals
   {
     std::ostringstream message;
     const noise::FarAbove& farAbove = lengths.FarAbove;
-    if (farAbove.Fill)
+    if (farAbove.Fill && this->TooLong > 0)
     {
       message << "\n"
               << this->TooLong << " samples hold " << lengths.FarValue
@@ -401,7 +399,7 @@ struct vtkSteerableNoiseFilter::Internals
               << "), as values do that stand for missing ones: they got 0 and count for nothing. "
                  "MaskUpperThreshold sets the limit by hand; 1e300 takes all of them.";
     }
-    else if (farAbove.Count > 0.0)
+    else if (!farAbove.Fill && farAbove.Count > 0.0)
     {
       message << "\n"
               << farAbove.Count << " vectors are far longer than all others: with components up to "
@@ -737,8 +735,7 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   if (this->FeatureSize <= 0.0)
   {
-    const double automatic = extremes.GetAutomaticSize();
-    parameters.FeatureSize = automatic > 0.0 ? automatic : 1.0;
+    parameters.FeatureSize = extremes.Bounds.GetFeatureSize(extremes.GetSampleSpacing());
   }
   if (needsMagnitude)
   {

@@ -4,6 +4,7 @@
 #include "FilterTestHelpers.h"
 #include "NoiseCells.h"
 #include "NoiseGhosts.h"
+#include "SurfaceFields.h"
 
 #include "vtkAMRBox.h"
 #include "vtkAppendFilter.h"
@@ -1094,6 +1095,35 @@ TEST(SteerableNoiseDataSets, AutomaticSizeFitsIntoThePicture)
 }
 
 /// Sizes stay the same while data change a little.
+TEST(SteerableNoiseDataSets, TheMapperIsOfferedTheSameAutomaticSize)
+{
+  // What a renderer asks with bounds alone, and with the distance of samples where they are coarse.
+  for (const double height : { 1.0, 30.0, 1e5 })
+  {
+    vtkNew<vtkPlaneSource> plane;
+    plane->SetOrigin(0.0, 0.0, 0.0);
+    plane->SetPoint1(40.0, 0.0, 0.0);
+    plane->SetPoint2(0.0, height, 0.0);
+    plane->SetResolution(500, 500);
+    plane->Update();
+    AddFlow(plane->GetOutput());
+    double bounds[6];
+    plane->GetOutput()->GetBounds(bounds);
+    const double size = noise::GetAutomaticFeatureSize(bounds);
+    const double ofFilter = AutomaticSize(plane->GetOutput());
+    EXPECT_GE(ofFilter, size) << height;
+    if (height < 1e5)
+    {
+      EXPECT_EQ(ofFilter, size) << height;
+    }
+    EXPECT_LE(size, 1.2 * 0.125 * std::min(40.0, height)) << height;
+  }
+  const double none[6] = { 1.0, -1.0, 1.0, -1.0, 1.0, -1.0 };
+  EXPECT_EQ(noise::GetAutomaticFeatureSize(none), 1.0);
+  const double cube[6] = { 0.0, 64.0, 0.0, 64.0, 0.0, 64.0 };
+  EXPECT_EQ(noise::GetAutomaticFeatureSize(cube, 2.0), 8.0);
+}
+
 TEST(SteerableNoiseDataSets, AutomaticSizesAreOnALadder)
 {
   const auto size = [](double width)

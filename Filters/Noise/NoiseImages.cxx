@@ -20,7 +20,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <memory>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -168,8 +167,10 @@ void CheckMemory(vtkImageData* input, const int fine[3], int factor)
   bool fits = bytes < double(std::numeric_limits<std::ptrdiff_t>::max());
   if (fits)
   {
-    const std::unique_ptr<char[]> room(new (std::nothrow) char[static_cast<std::size_t>(bytes)]);
+    // The functions, not an expression with new: compilers may leave out such a one and its delete, as g++ 16 does.
+    void* room = ::operator new(static_cast<std::size_t>(bytes), std::nothrow);
     fits = room != nullptr;
+    ::operator delete(room);
   }
   if (!fits)
   {

@@ -56,11 +56,20 @@ double StrengthOf(const NoiseParameters& parameters, double magnitude)
 template <int N>
 AxialMetric<N> MetricFromVector(const NoiseParameters& parameters, const Vector<N>& vector)
 {
+  return MetricFromVector<N>(parameters, vector, vector.stableNorm());
+}
+
+template <int N>
+AxialMetric<N> MetricFromVector(
+  const NoiseParameters& parameters, const Vector<N>& inPlane, double length)
+{
   AxialMetric<N> metric;
-  if (Normalize<N>(vector, metric.Direction))
+  Vector<N> direction;
+  if (Normalize<N>(inPlane, direction) && !(inPlane.stableNorm() <= SmallestInPlane * length))
   {
     const EigenvalueRange range = VectorEigenvalues(parameters, N);
-    const double strength = StrengthOf(parameters, vector.norm());
+    const double strength = StrengthOf(parameters, length);
+    metric.Direction = direction;
     metric.SecondAxis = metric.Direction.unitOrthogonal();
     metric.Along = Blend(range.Along, strength);
     metric.Across = Blend(range.Across, strength);
@@ -83,7 +92,7 @@ AxialMetric<3> MetricFromSurfaceVector(
   Vector<3> inPlane;
   // A vector along the normal has no direction on the surface: what is left of it is rounding.
   if (!Normalize<3>(vector, direction) || !Normalize<3>(normal, unitNormal) ||
-    !((inPlane = direction - direction.dot(unitNormal) * unitNormal).norm() > 1e-5))
+    !((inPlane = direction - direction.dot(unitNormal) * unitNormal).norm() > SmallestInPlane))
   {
     return metric;
   }
@@ -101,6 +110,13 @@ AxialMetric<3> MetricFromSurfaceVector(
 template <int N>
 AxialMetric<N> MetricFromTensor(const NoiseParameters& parameters, const Matrix<N>& tensor)
 {
+  return MetricFromTensor<N>(parameters, tensor, tensor.norm());
+}
+
+template <int N>
+AxialMetric<N> MetricFromTensor(
+  const NoiseParameters& parameters, const Matrix<N>& tensor, double norm)
+{
   AxialMetric<N> metric;
   const double largest = tensor.cwiseAbs().maxCoeff();
   if (!(largest > 0.0) || !tensor.allFinite())
@@ -117,7 +133,7 @@ AxialMetric<N> MetricFromTensor(const NoiseParameters& parameters, const Matrix<
     return metric; // isotropic: no direction is the major one
   }
   const EigenvalueRange range = VectorEigenvalues(parameters, N);
-  const double strength = StrengthOf(parameters, tensor.norm());
+  const double strength = StrengthOf(parameters, norm);
   const auto remap = [&](double value)
   {
     return Blend(
@@ -156,8 +172,12 @@ void ApplyCurvature(AxialMetric<N>& metric, const Vector<N>& curvature)
 
 template AxialMetric<2> MetricFromVector<2>(const NoiseParameters&, const Vector<2>&);
 template AxialMetric<3> MetricFromVector<3>(const NoiseParameters&, const Vector<3>&);
+template AxialMetric<2> MetricFromVector<2>(const NoiseParameters&, const Vector<2>&, double);
+template AxialMetric<3> MetricFromVector<3>(const NoiseParameters&, const Vector<3>&, double);
 template AxialMetric<2> MetricFromTensor<2>(const NoiseParameters&, const Matrix<2>&);
 template AxialMetric<3> MetricFromTensor<3>(const NoiseParameters&, const Matrix<3>&);
+template AxialMetric<2> MetricFromTensor<2>(const NoiseParameters&, const Matrix<2>&, double);
+template AxialMetric<3> MetricFromTensor<3>(const NoiseParameters&, const Matrix<3>&, double);
 template void ApplyCurvature<2>(AxialMetric<2>&, const Vector<2>&);
 template void ApplyCurvature<3>(AxialMetric<3>&, const Vector<3>&);
 } // namespace steerable

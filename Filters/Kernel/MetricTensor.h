@@ -16,6 +16,8 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+
 namespace steerable
 {
 template <int N>
@@ -71,6 +73,30 @@ template <int N>
 AxialMetric<N> MetricFromVector(const NoiseParameters& parameters, const Vector<N>& vector);
 
 /**
+ * The same of the part in a plane of a vector with this `length`: its strength is that of the whole vector, as
+ * on surfaces, and where next to nothing is in the plane there is no direction.
+ */
+template <int N>
+AxialMetric<N> MetricFromVector(
+  const NoiseParameters& parameters, const Vector<N>& inPlane, double length);
+
+/// A vector of length 1 has no direction in a plane that it stands on: this much of it is rounding.
+constexpr double SmallestInPlane = 1e-5;
+
+/// Length of a vector (norm of a tensor) from its part in a plane and the rest, which counts if it is finite.
+inline double WholeLength(double inPlane, double across)
+{
+  return std::isfinite(across) ? std::hypot(inPlane, across) : inPlane;
+}
+
+/// The rest of a tensor, XX YY ZZ XY YZ XZ, whose plane is x-y.
+inline double AcrossPlane(const float* tuple)
+{
+  const double inRow = std::hypot(double(tuple[4]), double(tuple[5]));
+  return std::sqrt(double(tuple[2]) * tuple[2] + 2.0 * inRow * inRow);
+}
+
+/**
  * Vector on a surface with this normal, projected on the tangent plane. The normal may have any
  * length; 0 or not finite: not on a surface, the metric is that of the vector in space.
  */
@@ -83,6 +109,11 @@ AxialMetric<3> MetricFromSurfaceVector(
  */
 template <int N>
 AxialMetric<N> MetricFromTensor(const NoiseParameters& parameters, const Matrix<N>& tensor);
+
+/// The same with the strength of a tensor of this Frobenius `norm`, of which `inPlane` is a part.
+template <int N>
+AxialMetric<N> MetricFromTensor(
+  const NoiseParameters& parameters, const Matrix<N>& inPlane, double norm);
 
 /// Symmetric tensor from 6 components, XX YY ZZ XY YZ XZ.
 template <int N>

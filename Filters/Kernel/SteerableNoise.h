@@ -55,9 +55,9 @@ private:
 /// What steers the noise: vectors or tensors, one of the two.
 struct Field
 {
-  /// 3 components; in 2D the third is not looked at.
+  /// 3 components; in 2D the third counts for the length alone, which masks and Strength go by.
   const TupleReader<float>* Vectors = nullptr;
-  /// 6 components, XX YY ZZ XY YZ XZ; in 2D those with a Z are not looked at.
+  /// 6 components, XX YY ZZ XY YZ XZ; in 2D those with a Z count for the norm alone.
   const TupleReader<float>* Tensors = nullptr;
   /// 3 components, surface normals of any length: asks for the metric of surfaces, 3D only.
   const TupleReader<float>* Normals = nullptr;

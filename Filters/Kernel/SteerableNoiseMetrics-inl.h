@@ -71,8 +71,8 @@ enum class Wanted
 };
 
 /**
- * Directions of `count` tuples of 3 floats, 0 where there is none. In 2D the third component is not looked
- * at. Returns whether all of them have a direction beyond doubt.
+ * Directions of `count` tuples of 3 floats, 0 where there is none. In 2D they lie in the plane, and the third
+ * component counts for the length alone. Returns whether all of them have a direction beyond doubt.
  */
 template <int N, Wanted What>
 HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* const (&unit)[3],
@@ -97,12 +97,17 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
     V u[3];
     hn::LoadInterleaved3(DF(), from, u[0], u[1], u[2]);
     V length2 = hn::MulAdd(u[0], u[0], hn::Mul(u[1], u[1]));
+    const V third = N == 3 ? u[2] : hn::IfThenElseZero(hn::IsFinite(u[2]), u[2]);
+    const V whole2 = hn::MulAdd(third, third, length2);
     if constexpr (N == 3)
     {
-      length2 = hn::MulAdd(u[2], u[2], length2);
+      length2 = whole2;
     }
-    // NaN fails both comparisons; what squares to too much or too little is looked at again.
-    const auto good = hn::And(hn::Gt(length2, Const(1e-30f)), hn::Lt(length2, Const(1e30f)));
+    // NaN fails the comparisons; what squares to too much or too little, or is next to nothing in the plane, is
+    // looked at again.
+    constexpr auto least = static_cast<float>(2.0 * SmallestInPlane * SmallestInPlane);
+    const V smallest = hn::Max(Const(1e-30f), hn::Mul(whole2, Const(least)));
+    const auto good = hn::And(hn::Gt(length2, smallest), hn::Lt(whole2, Const(1e30f)));
     const V norm = hn::Sqrt(length2);
     const V inverse = hn::Div(Const(1.0f), norm);
     if constexpr (What == Wanted::Inverses)
@@ -124,7 +129,7 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
     }
     if (metrics)
     {
-      hn::StoreU(norm, DF(), length + i);
+      hn::StoreU(N == 2 ? hn::Sqrt(whole2) : norm, DF(), length + i);
     }
     if (!hn::AllTrue(DF(), good))
     {
@@ -143,8 +148,10 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
           vector[axis] = from[3 * lane + axis];
         }
         const double largest = vector.cwiseAbs().maxCoeff();
-        const bool any = largest > 0.0 && vector.allFinite();
-        const double norm2 = vector.squaredNorm();
+        const double norm = vector.norm(); // in double: there is room for squares
+        const double whole = N == 2 ? WholeLength(norm, from[3 * lane + 2]) : norm;
+        const bool finite = vector.allFinite();
+        const bool any = finite && largest > 0.0 && norm > SmallestInPlane * whole;
         vector = any ? Vector<N>(vector.normalized()) : Vector<N>::Zero(); // in double
         for (int axis = 0; axis < N; ++axis)
         {
@@ -156,7 +163,7 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
         }
         if (metrics)
         {
-          length[i + lane] = any ? static_cast<float>(std::sqrt(norm2)) : 0.0f;
+          length[i + lane] = finite ? static_cast<float>(whole) : 0.0f;
         }
         if (What == Wanted::Inverses)
         {
@@ -203,7 +210,7 @@ void ProjectOnSurface(
       u -= u.dot(m) * m;
       // A vector along the normal has no direction on the surface: what is left of it is rounding.
       const double inPlane = u.norm();
-      u = inPlane > 1e-5 ? Vector<3>(u / inPlane) : Vector<3>::Zero();
+      u = inPlane > SmallestInPlane ? Vector<3>(u / inPlane) : Vector<3>::Zero();
     }
     SetAxes(u, m, to, block);
   }
@@ -373,7 +380,9 @@ void MetricsOfTensors(const NoiseSetup& setup, const float* tuples, std::size_t 
   {
     const std::size_t to = at + i;
     const Matrix<N> tensor = TensorOf<N>(tuples + 6 * i);
-    const AxialMetric<N> metric = MetricFromTensor<N>(setup.Parameters, tensor);
+    double norm = tensor.norm();
+    norm = N == 2 ? WholeLength(norm, AcrossPlane(tuples + 6 * i)) : norm;
+    const AxialMetric<N> metric = MetricFromTensor<N>(setup.Parameters, tensor, norm);
     if constexpr (N == 3)
     {
       SetAxes(metric.Direction, metric.SecondAxis, to, block);
@@ -394,7 +403,6 @@ void MetricsOfTensors(const NoiseSetup& setup, const float* tuples, std::size_t 
     {
       block.Bend[axis][to] *= static_cast<float>(metric.Clarity);
     }
-    const double norm = tensor.norm();
     block.Length[to] = std::isfinite(norm) ? static_cast<float>(norm) : 0.0f;
   }
 }

@@ -279,7 +279,9 @@ bool SubbandWeights::Compute(const Eigen::Matrix2d& metric, double* gamma) const
     scaled *= k0 * k0;
   }
   this->WeighBands(this->Target, scaled, gamma);
-  this->NormalizeVariance(gamma);
+  const double scale = 1.0 / std::sqrt(this->GetVariance(gamma));
+  std::for_each(
+    gamma, gamma + this->Parameters.Pyramid.Components(), [=](double& weight) { weight *= scale; });
   return true;
 }
 
@@ -389,12 +391,20 @@ void SubbandWeights::WeighBands(
   }
 }
 
-void SubbandWeights::NormalizeVariance(double* gamma) const
+void SubbandWeights::LimitVariance(double most, double* weights) const
+{
+  const double variance = this->GetVariance(weights);
+  const double scale = variance > most ? std::sqrt(most / variance) : 1.0;
+  std::for_each(weights, weights + this->Parameters.Pyramid.Components(),
+    [=](double& weight) { weight *= scale; });
+}
+
+double SubbandWeights::GetVariance(const double* gamma) const
 {
   const SubbandParameters& pyramid = this->Parameters.Pyramid;
   using Weights =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 8, MaximumScales>;
-  Eigen::Map<Eigen::MatrixXd> weights(gamma, pyramid.Orientations, pyramid.Scales);
+  const Eigen::Map<const Eigen::MatrixXd> weights(gamma, pyramid.Orientations, pyramid.Scales);
   const Weights filtered = this->Angular.lazyProduct(weights);
 
   // tr(gamma^T Q_ang gamma Q_rad); Q_rad is tridiagonal.
@@ -407,7 +417,7 @@ void SubbandWeights::NormalizeVariance(double* gamma) const
       trace += 2.0 * this->Radial(j, j + 1) * filtered.col(j).dot(weights.col(j + 1));
     }
   }
-  weights /= pyramid.BandCenter * std::sqrt(trace);
+  return pyramid.BandCenter * pyramid.BandCenter * trace;
 }
 
 double DistortionRatio(const Eigen::Matrix2d& metric)

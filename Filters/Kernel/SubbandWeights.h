@@ -90,6 +90,13 @@ public:
   bool Antialias(const Eigen::Matrix2d& footprint, double* beta) const;
 
   /**
+   * Scale weights down to a variance of `most` where theirs is above it. Weights that follow a stretch beyond what
+   * K holds are large and nearly cancel: with factors of a filter on top they no longer do, and the filter, which
+   * can only take away, would add.
+   */
+  void LimitVariance(double most, double* weights) const;
+
+  /**
    * Clamp the eigenvalues of a finite metric to what the pyramid holds, [k0^-2, 4^(J-1) k0^-2].
    * Returns whether it changed.
    */
@@ -122,7 +129,7 @@ private:
   // gamma and beta alike: the values of a table along each direction, joined to weights of bands.
   void WeighBands(
     const RadialTable& table, const Eigen::Matrix2d& scaledMetric, double* weights) const;
-  void NormalizeVariance(double* gamma) const;
+  double GetVariance(const double* gamma) const;
 
   SubbandWeightParameters Parameters;
   int DirectionCount = 0;

@@ -32,6 +32,7 @@ class CellDimensions
 public:
   explicit CellDimensions(vtkDataSet* dataset)
     : Dimensions(VTK_NUMBER_OF_CELL_TYPES, 0)
+    , Curved(VTK_NUMBER_OF_CELL_TYPES, false)
   {
     std::vector<bool> known(VTK_NUMBER_OF_CELL_TYPES, false);
     vtkNew<vtkGenericCell> cell;
@@ -43,6 +44,7 @@ public:
         known[type] = true;
         cell->SetCellType(type);
         this->Dimensions[type] = cell->GetCellDimension();
+        this->Curved[type] = !cell->IsLinear();
         // VTK makes what it needs for this when it is first called.
         vtkNew<vtkIdList> ids;
         dataset->GetCellPoints(id, ids);
@@ -51,6 +53,8 @@ public:
   }
 
   int Get(int type) const { return this->Dimensions[type]; }
+  /// Quadratic cells and such of higher order.
+  bool IsCurved(int type) const { return this->Curved[type]; }
   bool Has(int dimension) const
   {
     return std::find(this->Dimensions.begin(), this->Dimensions.end(), dimension) !=
@@ -59,6 +63,7 @@ public:
 
 private:
   std::vector<int> Dimensions;
+  std::vector<bool> Curved;
 };
 
 /**

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseArrays.h"
 
+#include "SteeringChoice.h"
 #include "SurfaceFields.h"
 
 #include "vtkArrayDispatch.h"
@@ -16,7 +17,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -355,29 +355,80 @@ void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, doub
       {
         sum = components > 2 ? t[0] * t[0] + t[1] * t[1] + t[2] * t[2] : t[0] * t[0] + t[1] * t[1];
       }
-      lengths[i] = std::sqrt(sum);
+      const bool tooLarge = std::isinf(sum) &&
+        std::none_of(t, t + components, [](double value) { return std::isinf(value); });
+      lengths[i] = tooLarge ? std::numeric_limits<double>::max() : std::sqrt(sum);
     });
+}
+
+double GetLargestComponent(vtkDataArray* array, vtkIdType index)
+{
+  double largest = 0.0;
+  for (int c = 0; c < array->GetNumberOfComponents(); ++c)
+  {
+    const double value = array->GetComponent(index, c);
+    largest = std::abs(value) > std::abs(largest) ? value : largest;
+  }
+  return largest;
+}
+
+namespace
+{
+ArrayFacts FactsOf(vtkDataSetAttributes* attributes, int index)
+{
+  ArrayFacts facts;
+  if (vtkDataArray* array = attributes->GetArray(index)) // not strings
+  {
+    facts.Name = array->GetName() ? array->GetName() : "";
+    facts.DataType = array->GetDataType();
+    facts.Components = array->GetNumberOfComponents();
+    facts.Attribute = attributes->IsArrayAnAttribute(index);
+  }
+  return facts;
+}
+} // namespace
+
+bool MaySteer(const ArrayFacts& array)
+{
+  return array.Attribute != vtkDataSetAttributes::NORMALS &&
+    array.Attribute != vtkDataSetAttributes::TCOORDS && array.DataType != VTK_UNSIGNED_CHAR;
+}
+
+int ChooseArray(const std::vector<ArrayFacts>& arrays)
+{
+  const auto active = [&](int attribute)
+  {
+    const auto found = std::find_if(arrays.begin(), arrays.end(),
+      [=](const ArrayFacts& array) { return array.Attribute == attribute; });
+    return found != arrays.end() ? static_cast<int>(found - arrays.begin()) : -1;
+  };
+  int chosen = active(vtkDataSetAttributes::VECTORS);
+  if (chosen >= 0)
+  {
+    return chosen;
+  }
+  for (std::size_t i = 0; i < arrays.size(); ++i)
+  {
+    const ArrayFacts& array = arrays[i];
+    const bool isReal = array.DataType == VTK_FLOAT || array.DataType == VTK_DOUBLE;
+    if (isReal && array.Components == 3 && MaySteer(array) && array.Name != "Normals" &&
+      (chosen < 0 || array.Name < arrays[static_cast<std::size_t>(chosen)].Name))
+    {
+      chosen = static_cast<int>(i);
+    }
+  }
+  return chosen >= 0 ? chosen : active(vtkDataSetAttributes::TENSORS);
 }
 
 vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes)
 {
-  if (vtkDataArray* vectors = attributes->GetVectors())
-  {
-    return vectors;
-  }
+  std::vector<ArrayFacts> arrays;
   for (int i = 0; i < attributes->GetNumberOfArrays(); ++i)
   {
-    vtkDataArray* array = attributes->GetArray(i);
-    const bool isReal =
-      array && (array->GetDataType() == VTK_FLOAT || array->GetDataType() == VTK_DOUBLE);
-    if (isReal && array->GetNumberOfComponents() == 3 && array != attributes->GetNormals() &&
-      array != attributes->GetTCoords() &&
-      (!array->GetName() || std::strcmp(array->GetName(), "Normals") != 0))
-    {
-      return array;
-    }
+    arrays.push_back(FactsOf(attributes, i));
   }
-  return attributes->GetTensors();
+  const int chosen = ChooseArray(arrays);
+  return chosen >= 0 ? attributes->GetArray(chosen) : nullptr;
 }
 
 vtkDataArray* FindSteeringArray(
@@ -405,8 +456,12 @@ vtkDataArray* FindSteeringArray(
     const int components = array->GetNumberOfComponents();
     const vtkIdType samples = onCells ? dataset->GetNumberOfCells() : dataset->GetNumberOfPoints();
     // Chosen by default in a panel when nothing better is there, but no flow.
-    if (array == attributes->GetNormals() || array == attributes->GetTCoords() ||
-      array->GetDataType() == VTK_UNSIGNED_CHAR)
+    ArrayFacts facts;
+    facts.DataType = array->GetDataType();
+    facts.Attribute = array == attributes->GetNormals() ? vtkDataSetAttributes::NORMALS
+      : array == attributes->GetTCoords()               ? vtkDataSetAttributes::TCOORDS
+                                                        : -1;
+    if (!MaySteer(facts))
     {
       message << "holds normals, texture coordinates or colours, not vectors. Choose another one, or copy "
                  "it with the Calculator if it is meant.";

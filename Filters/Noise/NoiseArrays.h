@@ -66,13 +66,16 @@ std::unique_ptr<steerable::TupleReader<float>> LeaveOut(
 
 /**
  * Lengths of the tuples [first, first + count): Euclidean for vectors, all components counted; for tensors
- * the Frobenius norm of their symmetric part.
+ * the Frobenius norm of their symmetric part. Numbers too large to be squared have the length of the largest
+ * one.
  */
 void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, double* lengths);
 
+/// The component of the largest amount in tuple `index`; NaN beside others does not count.
+double GetLargestComponent(vtkDataArray* array, vtkIdType index);
+
 /**
- * The array that steers the noise when nobody named one: active vectors, else the first floating-point
- * array of 3 components that is neither normals nor texture coordinates, else active tensors.
+ * The array that steers the noise when nobody named one, as ChooseArray (SteeringChoice.h) has it.
  */
 vtkDataArray* FindDefaultArray(vtkDataSetAttributes* attributes);
 } // namespace noise

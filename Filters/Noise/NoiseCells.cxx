@@ -5,13 +5,10 @@
 #include "vtkCellType.h"
 #include "vtkDataSet.h"
 #include "vtkDoubleArray.h"
-#include "vtkGenericCell.h"
-#include "vtkIdList.h"
-#include "vtkNew.h"
 #include "vtkSMPThreadLocalObject.h"
 #include "vtkSMPTools.h"
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -54,6 +51,61 @@ int GetPlainCell(vtkDataSet* dataset, vtkIdType cell, vtkIdList* ids)
     return VTK_TRIANGLE;
   }
   return type;
+}
+
+bool CurvedCell::Set(vtkDataSet* dataset, vtkIdType cell)
+{
+  if (GetPlainCell(dataset, cell, this->Ids) != dataset->GetCellType(cell))
+  {
+    return false;
+  }
+  dataset->GetCell(cell, this->Cell);
+  this->Weights.resize(static_cast<std::size_t>(std::max<vtkIdType>(this->Cell->GetNumberOfPoints(), 1)));
+  return this->Cell->GetParametricCoords() != nullptr;
+}
+
+Eigen::Vector3d CurvedCell::GetPlace(const Eigen::Vector3d& parameters)
+{
+  int part = 0;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  this->Cell->EvaluateLocation(part, parameters.data(), place.data(), this->Weights.data());
+  return place;
+}
+
+Eigen::Vector3d CurvedCell::GetNormalAt(const Eigen::Vector3d& parameters)
+{
+  // Interpolations are polynomials, also a step beyond the cell.
+  constexpr double step = 1e-4;
+  Eigen::Vector3d tangents[2];
+  for (int axis = 0; axis < 2; ++axis)
+  {
+    const Eigen::Vector3d offset = step * Eigen::Vector3d::Unit(axis);
+    tangents[axis] = this->GetPlace(parameters + offset) - this->GetPlace(parameters - offset);
+  }
+  const double longest = std::max(tangents[0].squaredNorm(), tangents[1].squaredNorm());
+  const Eigen::Vector3d normal = tangents[0].cross(tangents[1]);
+  return normal.norm() > 1e-6 * longest ? normal.normalized() : Eigen::Vector3d::Zero().eval();
+}
+
+Eigen::Vector3d CurvedCell::GetNormal(int index)
+{
+  const Eigen::Vector3d parameters(this->Cell->GetParametricCoords() + 3 * index);
+  Eigen::Vector3d normal = this->GetNormalAt(parameters);
+  if (normal.isZero(0.0))
+  {
+    // Where a side has become a point, as at a pole: what is near.
+    Eigen::Vector3d center;
+    this->Cell->GetParametricCenter(center.data());
+    normal = this->GetNormalAt(parameters + 0.01 * (center - parameters));
+  }
+  return normal;
+}
+
+Eigen::Vector3d CurvedCell::GetNormalAtCenter()
+{
+  Eigen::Vector3d center;
+  this->Cell->GetParametricCenter(center.data());
+  return this->GetNormalAt(center);
 }
 
 void ComputeCellCenters(vtkDataSet* dataset, vtkDoubleArray* centers)

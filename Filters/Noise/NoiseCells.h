@@ -6,11 +6,17 @@
 #ifndef NoiseCells_h
 #define NoiseCells_h
 
+#include "vtkGenericCell.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkType.h"
+
+#include <Eigen/Core>
+
+#include <vector>
 
 class vtkDataSet;
 class vtkDoubleArray;
-class vtkIdList;
 
 namespace noise
 {
@@ -22,6 +28,27 @@ namespace noise
  * VTK_EMPTY_CELL with their points.
  */
 int GetPlainCell(vtkDataSet* dataset, vtkIdType cell, vtkIdList* ids);
+
+/**
+ * Unit normals of curved surface cells, from the derivatives of VTK's interpolation. One object for each thread.
+ */
+class CurvedCell
+{
+public:
+  /// Takes a cell of dimension 2; false where VTK cannot be asked about it.
+  bool Set(vtkDataSet* dataset, vtkIdType cell);
+  /// At its point `index`; 0 if there is none.
+  Eigen::Vector3d GetNormal(int index);
+  Eigen::Vector3d GetNormalAtCenter();
+
+private:
+  Eigen::Vector3d GetNormalAt(const Eigen::Vector3d& parameters);
+  Eigen::Vector3d GetPlace(const Eigen::Vector3d& parameters);
+
+  vtkNew<vtkGenericCell> Cell;
+  vtkNew<vtkIdList> Ids;
+  std::vector<double> Weights;
+};
 
 /// Centres of all cells, 3 components: VTK's, or the mean of the points of what GetPlainCell replaced.
 void ComputeCellCenters(vtkDataSet* dataset, vtkDoubleArray* centers);

@@ -19,6 +19,9 @@ class vtkFloatArray;
 
 namespace noise
 {
+/// 40 degrees: facets of a round surface meet below, edges of a body above.
+constexpr double CreaseCosine = 0.766;
+
 class CoincidentPoints
 {
 public:
@@ -31,6 +34,9 @@ public:
    * are joined by steps of less than the angle with this cosine; a crease keeps its two normals.
    */
   void Share(vtkFloatArray* values, double stepsPerUnit, bool lines, double leastCosine) const;
+
+  /// All points that have copies.
+  const std::vector<vtkIdType>& GetPoints() const { return this->Points; }
 
 private:
   std::vector<vtkIdType> Points;     // group g: Points[Starts[g]..Starts[g + 1]]

@@ -238,6 +238,11 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
 }
 } // namespace
 
+bool AreSamePlaces(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
+{
+  return (a - b).norm() <= 1e-6 * std::min(a.norm(), b.norm());
+}
+
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells,
   const HiddenSamples& hidden, double cellSize)
@@ -248,7 +253,8 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
 
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions)[3],
   const steerable::TupleReader<double>& positions, const steerable::TupleReader<float>& vectors,
-  const std::vector<unsigned char>& hidden)
+  const std::vector<unsigned char>& hidden,
+  const std::function<bool(int axis, vtkIdType sample)>& cellsMeet)
 {
   const auto isThere = [&](vtkIdType sample) { return hidden.empty() || !hidden[sample]; };
   const vtkIdType strides[3] = { 1, dimensions[0],
@@ -257,7 +263,6 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
   const auto axes = static_cast<int>(
     std::count_if(dimensions, dimensions + 3, [](int samples) { return samples > 1; }));
   auto curvature = NewOutputArray("Curvature", 3, count);
-  // An O-grid is closed where its first and last layer are at the same places, as doubles turn out.
   const auto meet = [&](vtkIdType first, vtkIdType last)
   {
     double scratch[6];
@@ -265,7 +270,7 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
       positions.Read(static_cast<std::size_t>(first), 1, scratch));
     const Vector3d b = Eigen::Map<const Vector3d>(
       positions.Read(static_cast<std::size_t>(last), 1, scratch + 3));
-    return (a - b).norm() <= 1e-6 * std::min(a.norm(), b.norm());
+    return AreSamePlaces(a, b);
   };
   vtkSMPTools::For(0, count, 1024,
     [&](vtkIdType begin, vtkIdType end)
@@ -306,7 +311,20 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
           const vtkIdType first = i - index * strides[axis];
           const vtkIdType last = first + (dimensions[axis] - 1) * strides[axis];
           const bool ends = index == 0 || index + 1 == dimensions[axis];
-          if (ends && dimensions[axis] > 3 && isThere(first) && isThere(last) &&
+          if (cellsMeet)
+          {
+            if (ends && dimensions[axis] > 2 && isThere(first) && isThere(last) &&
+              cellsMeet(axis, first))
+            {
+              const vtkIdType back = index == 0 ? last : before;
+              getDifferences(back, index == 0 ? after : first, fit);
+            }
+            else if (before < after)
+            {
+              getDifferences(before, after, fit);
+            }
+          }
+          else if (ends && dimensions[axis] > 3 && isThere(first) && isThere(last) &&
             isThere(first + strides[axis]) && isThere(last - strides[axis]) && meet(first, last))
           {
             getDifferences(last - strides[axis], first + strides[axis], fit);

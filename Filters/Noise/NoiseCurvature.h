@@ -16,6 +16,9 @@
 #include "vtkFloatArray.h"
 #include "vtkSmartPointer.h"
 
+#include <Eigen/Core>
+
+#include <functional>
 #include <vector>
 
 class vtkDataSet;
@@ -34,11 +37,17 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
 
 /**
  * The same of a structured grid of samples: differences of the neighbours along its axes, as on images.
- * `hidden`: one value for each sample, or empty; the grid ends before those that are not 0.
+ * `hidden`: one value for each sample, or empty; the grid ends before those that are not 0. Where the first and
+ * last samples along an axis are at the same places, as in O-grids, differences go on around. Samples in cells
+ * do so where `cellsMeet(axis, sample)` says it of the ends of the row with this first sample; null: of points.
  */
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions)[3],
   const steerable::TupleReader<double>& positions, const steerable::TupleReader<float>& vectors,
-  const std::vector<unsigned char>& hidden);
+  const std::vector<unsigned char>& hidden,
+  const std::function<bool(int axis, vtkIdType sample)>& cellsMeet);
+
+/// Places are the same, as doubles turn out around a closed grid.
+bool AreSamePlaces(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 } // namespace noise
 
 #endif

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseImages.h"
 
+#include "NoiseGhosts.h"
+
 #include "vtkArrayListTemplate.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -24,6 +26,8 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace noise
 {
@@ -46,9 +50,13 @@ Between Locate(double place, int count)
   return { low, std::min<vtkIdType>(low + 1, count - 1), inside - low };
 }
 
-/// Interpolates all arrays of `list` from a coarse lattice to a fine one.
+/**
+ * Interpolates all arrays of `list` from a coarse lattice to a fine one. Samples that are `hidden` (one value for
+ * each, or empty) have no part in those between them and others.
+ */
 template <typename Place>
-void Interpolate(ArrayList& list, const int coarse[3], const int fine[3], Place&& place)
+void Interpolate(ArrayList& list, const int coarse[3], const int fine[3],
+  const std::vector<unsigned char>& hidden, Place&& place)
 {
   vtkSMPTools::For(0, static_cast<vtkIdType>(fine[1]) * fine[2],
     [&](vtkIdType begin, vtkIdType end)
@@ -64,6 +72,7 @@ void Interpolate(ArrayList& list, const int coarse[3], const int fine[3], Place&
         {
           const Between x = Locate(place(0, i), coarse[0]);
           int used = 0;
+          double seen = 0.0;
           for (int corner = 0; corner < 8; ++corner)
           {
             const double weight = (corner & 1 ? x.Share : 1.0 - x.Share) *
@@ -77,6 +86,16 @@ void Interpolate(ArrayList& list, const int coarse[3], const int fine[3], Place&
             const vtkIdType cz = corner & 4 ? z.High : z.Low;
             ids[used] = (cz * coarse[1] + cy) * coarse[0] + cx;
             weights[used++] = weight;
+            seen += hidden.empty() || hidden[ids[used - 1]] ? 0.0 : weight;
+          }
+          for (int n = used - 1; seen > 0.0 && n >= 0; --n)
+          {
+            weights[n] /= seen;
+            if (hidden[ids[n]])
+            {
+              std::swap(ids[n], ids[used - 1]);
+              std::swap(weights[n], weights[--used]);
+            }
           }
           list.Interpolate(used, ids, weights, row * fine[0] + i);
         }
@@ -146,40 +165,10 @@ void CopyLabels(vtkPointData* from, vtkPointData* to, const int coarse[3], const
   }
 }
 
-/// Asks for the memory that the output takes, and gives it back; throws if there is none.
-void CheckMemory(vtkImageData* input, const int fine[3], int factor)
+/// Points that a magnified image has along an axis of so many, all of them asked for.
+int Magnified(int points, int factor)
 {
-  const double points = double(fine[0]) * fine[1] * fine[2];
-  double perPoint = sizeof(float); // the noise
-  for (vtkDataSetAttributes* attributes : { static_cast<vtkDataSetAttributes*>(
-                                              input->GetPointData()),
-         static_cast<vtkDataSetAttributes*>(input->GetCellData()) })
-  {
-    for (int n = 0; n < attributes->GetNumberOfArrays(); ++n)
-    {
-      if (vtkDataArray* array = attributes->GetArray(n))
-      {
-        perPoint += double(array->GetDataTypeSize()) * array->GetNumberOfComponents();
-      }
-    }
-  }
-  const double bytes = points * perPoint;
-  bool fits = bytes < double(std::numeric_limits<std::ptrdiff_t>::max());
-  if (fits)
-  {
-    // The functions, not an expression with new: compilers may leave out such a one and its delete, as g++ 16 does.
-    void* room = ::operator new(static_cast<std::size_t>(bytes), std::nothrow);
-    fits = room != nullptr;
-    ::operator delete(room);
-  }
-  if (!fits)
-  {
-    std::ostringstream message;
-    message << "Magnification " << factor << " makes " << fine[0] << " x " << fine[1] << " x "
-            << fine[2] << " samples, " << std::ceil(bytes / 1e9)
-            << " GB with all arrays, more than there is. Lower Magnification.";
-    throw std::runtime_error(message.str());
-  }
+  return points > 0 ? (points - 1) * factor + 1 : 0;
 }
 } // namespace
 
@@ -212,12 +201,57 @@ void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int fac
   outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
 }
 
-void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo, int factor)
+void CheckMemory(const std::vector<vtkImageData*>& images, int factor)
+{
+  double points = 0.0;
+  double bytes = 0.0;
+  for (vtkImageData* image : images)
+  {
+    const int* coarse = image->GetDimensions();
+    const double fine = double(Magnified(coarse[0], factor)) * Magnified(coarse[1], factor) *
+      Magnified(coarse[2], factor);
+    double perPoint = sizeof(float); // the noise
+    for (vtkDataSetAttributes* attributes : { static_cast<vtkDataSetAttributes*>(
+                                                image->GetPointData()),
+           static_cast<vtkDataSetAttributes*>(image->GetCellData()) })
+    {
+      for (int n = 0; n < attributes->GetNumberOfArrays(); ++n)
+      {
+        if (vtkDataArray* array = attributes->GetArray(n))
+        {
+          perPoint += double(array->GetDataTypeSize()) * array->GetNumberOfComponents();
+        }
+      }
+    }
+    points += fine;
+    bytes += fine * perPoint;
+  }
+  bool fits = bytes < double(std::numeric_limits<std::ptrdiff_t>::max());
+  if (fits)
+  {
+    // The functions, not an expression with new: compilers may leave out such a one and its delete, as g++ 16 does.
+    void* room = ::operator new(static_cast<std::size_t>(bytes), std::nothrow);
+    fits = room != nullptr;
+    ::operator delete(room);
+  }
+  if (!fits)
+  {
+    std::ostringstream message;
+    message << "Magnification " << factor << " makes " << points << " samples, "
+            << std::ceil(bytes / 1e9) << " GB with all arrays, more than there is. Lower Magnification.";
+    throw std::runtime_error(message.str());
+  }
+}
+
+void Magnify(vtkImageData* input, vtkImageData* output, const int* updateExtent, int factor)
 {
   int coarseExtent[6];
   input->GetExtent(coarseExtent);
   int extent[6];
-  outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
+  for (int i = 0; i < 6; ++i)
+  {
+    extent[i] = updateExtent ? updateExtent[i] : coarseExtent[i] * factor;
+  }
   if (input->GetNumberOfPoints() == 0)
   {
     output->ShallowCopy(input);
@@ -236,8 +270,6 @@ void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo,
     fineDims[axis] = std::max(extent[2 * axis + 1] - extent[2 * axis] + 1, 0);
     coarseDims[axis] = coarseExtent[2 * axis + 1] - coarseExtent[2 * axis] + 1;
   }
-  // Before anything is counted in ids of points.
-  CheckMemory(input, fineDims, factor);
   output->SetExtent(extent);
   output->SetSpacing(spacing);
   output->SetOrigin(input->GetOrigin());
@@ -256,7 +288,8 @@ void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo,
     out->SetNumberOfTuples(output->GetNumberOfPoints());
     ArrayList list;
     list.AddArrays(output->GetNumberOfPoints(), input->GetPointData(), out, 0.0, false);
-    Interpolate(list, coarseDims, fineDims, coarsePlace);
+    // Of points nothing is left out: between a hidden one and others the fine ones are hidden too.
+    Interpolate(list, coarseDims, fineDims, {}, coarsePlace);
     CopyLabels(input->GetPointData(), out, coarseDims, fineDims, coarsePlace);
   }
   vtkCellData* out = output->GetCellData();
@@ -294,21 +327,24 @@ void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo,
     (steers ? smooth : repeated)->AddArray(array);
   }
   const vtkIdType count = output->GetNumberOfCells();
-  const auto fill = [&](vtkCellData* from, auto&& place)
+  const std::vector<unsigned char> none;
+  const HiddenSamples hiddenSamples(input);
+  const auto fill =
+    [&](vtkCellData* from, const std::vector<unsigned char>& hidden, auto&& place)
   {
     vtkNew<vtkCellData> to;
     to->InterpolateAllocate(from, count);
     to->SetNumberOfTuples(count);
     ArrayList list;
     list.AddArrays(count, from, to, 0.0, false);
-    Interpolate(list, coarseCells, fineCells, place);
+    Interpolate(list, coarseCells, fineCells, hidden, place);
     for (int i = 0; i < to->GetNumberOfArrays(); ++i)
     {
       out->AddArray(to->GetArray(i));
     }
   };
-  fill(smooth, cellPlace);
-  fill(repeated, [&](int axis, int index) { return std::round(cellPlace(axis, index)); });
+  fill(smooth, hiddenSamples.Get(true), cellPlace);
+  fill(repeated, none, [&](int axis, int index) { return std::round(cellPlace(axis, index)); });
   for (int attribute = 0; attribute < vtkDataSetAttributes::NUM_ATTRIBUTES; ++attribute)
   {
     if (vtkAbstractArray* active = input->GetCellData()->GetAbstractAttribute(attribute))

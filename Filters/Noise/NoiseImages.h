@@ -6,6 +6,8 @@
 #ifndef NoiseImages_h
 #define NoiseImages_h
 
+#include <vector>
+
 class vtkDataSet;
 class vtkImageData;
 class vtkInformation;
@@ -15,14 +17,17 @@ namespace noise
 /// Whole extent and spacing of an image with `factor` samples for each of the input's.
 void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int factor);
 
+/// Throws std::runtime_error if there is no memory for the images with `factor` samples for each of theirs.
+void CheckMemory(const std::vector<vtkImageData*>& images, int factor);
+
 /**
- * Fills `output` with that image over the update extent and one sample of the input around it, which
+ * Fills `output` with that image over `updateExtent` (null: all of it) and one sample of the input around it, which
  * curvature looks at. Point arrays are interpolated linearly, samples at the input's places keep their values,
  * whole numbers of one component are those of the nearest point (vtkGhostType: hidden next to a hidden one), and cell arrays repeated, except that
  * floating-point cell arrays of 2 to 9 components (which may steer the noise) are interpolated between
- * cell centres. Throws std::runtime_error where the memory does not suffice.
+ * cell centres, hidden ones left out.
  */
-void Magnify(vtkImageData* input, vtkImageData* output, vtkInformation* outInfo, int factor);
+void Magnify(vtkImageData* input, vtkImageData* output, const int* updateExtent, int factor);
 
 /// Drops the border that curvature asked for, where an extent was requested.
 void CropToUpdateExtent(vtkDataSet* output, vtkInformation* outInfo);

@@ -21,16 +21,16 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
-#include "vtkRectilinearGrid.h"
+#include "vtkSMPThreadLocal.h"
 #include "vtkSMPTools.h"
 #include "vtkStaticPointLocator.h"
-#include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -39,12 +39,32 @@ namespace noise
 {
 namespace
 {
-/// Unit normal of the plane through points (a strip's first three), 0 if there is none.
+/// Unit normal of the plane through points (a strip's first three, a curved cell's corners), 0 if there is none.
 Eigen::Vector3d GetNormal(vtkDataSet* dataset, int cellType, vtkIdList* ids)
 {
-  const vtkIdType count = cellType == VTK_TRIANGLE_STRIP
-    ? std::min<vtkIdType>(3, ids->GetNumberOfIds())
-    : ids->GetNumberOfIds();
+  const auto corners = [&]() -> vtkIdType
+  {
+    switch (cellType)
+    {
+      case VTK_TRIANGLE_STRIP:
+      case VTK_QUADRATIC_TRIANGLE:
+      case VTK_BIQUADRATIC_TRIANGLE:
+      case VTK_LAGRANGE_TRIANGLE:
+      case VTK_BEZIER_TRIANGLE:
+        return 3;
+      case VTK_QUADRATIC_QUAD:
+      case VTK_BIQUADRATIC_QUAD:
+      case VTK_QUADRATIC_LINEAR_QUAD:
+      case VTK_LAGRANGE_QUADRILATERAL:
+      case VTK_BEZIER_QUADRILATERAL:
+        return 4;
+      case VTK_QUADRATIC_POLYGON: // its corners, then the middles of its sides
+        return ids->GetNumberOfIds() / 2;
+      default:
+        return ids->GetNumberOfIds();
+    }
+  };
+  const vtkIdType count = std::min(corners(), ids->GetNumberOfIds());
   // Newell's sum over the edges; a pixel's points are in the order of an image.
   const auto getId = [&](vtkIdType i)
   { return ids->GetId(cellType == VTK_PIXEL && i >= 2 ? 5 - i : i); };
@@ -74,80 +94,32 @@ bool IsGhostCell(vtkUnsignedCharArray* ghosts, vtkIdType cell)
     (ghosts->GetValue(cell) &
       vtkDataSetAttributes::DUPLICATECELL);
 }
-
-/// Points along each axis of a structured dataset; false for the others.
-bool GetDimensions(vtkDataSet* dataset, int dims[3])
-{
-  if (auto* image = vtkImageData::SafeDownCast(dataset))
-  {
-    image->GetDimensions(dims);
-    return true;
-  }
-  if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(dataset))
-  {
-    rectilinear->GetDimensions(dims);
-    return true;
-  }
-  if (auto* structured = vtkStructuredGrid::SafeDownCast(dataset))
-  {
-    structured->GetDimensions(dims);
-    return true;
-  }
-  return false;
-}
-
-/// The axis along which a structured dataset is one cell thick, -1 if none or several.
-int GetSlabAxis(vtkDataSet* dataset)
-{
-  int dims[3];
-  if (!GetDimensions(dataset, dims))
-  {
-    return -1;
-  }
-  int slab = -1;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (dims[axis] < 2)
-    {
-      return -1; // flat: its cells are surfaces anyway
-    }
-    if (dims[axis] == 2)
-    {
-      if (slab >= 0)
-      {
-        return -1;
-      }
-      slab = axis;
-    }
-  }
-  return slab;
-}
 } // namespace
 
 Samples::Samples(
-  vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent, int magnification,
-  const Plane& plane)
+  vtkDataSet* dataset, vtkDataArray* array, bool cells, const Shape& shape, int magnification,
+  const Plane& plane, double limit)
   : DataSet(dataset)
   , Array(array)
   , Cells(cells)
+  , TakenAs(shape)
   , Hidden(dataset)
 {
-  // Before anything looks at neighbours: what is hidden has no direction.
+  this->SetLeftOut(limit); // before anything looks at neighbours
   const bool vectors = IsVector(array->GetNumberOfComponents());
   const auto setSteering = [&](bool flat)
   {
     this->Steering = vectors ? MakeVectorReader(array, this->InAxes, flat, plane)
                              : MakeTensorReader(array, this->InAxes, flat, plane);
-    const std::vector<unsigned char>& hidden = this->Hidden.Get(cells);
-    if (!hidden.empty())
+    if (!this->LeftOut.empty())
     {
-      this->Steering = LeaveOut(std::move(this->Steering), vectors ? 3 : 6, hidden);
+      this->Steering = LeaveOut(std::move(this->Steering), vectors ? 3 : 6, this->LeftOut);
     }
     (vectors ? this->Field.Vectors : this->Field.Tensors) = this->Steering.get();
   };
-  if (auto* image = vtkImageData::SafeDownCast(dataset))
+  if (shape.IsGrid)
   {
-    this->SetGrid(image, wholeExtent);
+    this->SetGrid(vtkImageData::SafeDownCast(dataset));
     this->Grid.CurvatureStride = magnification;
   }
   else
@@ -166,11 +138,11 @@ vtkIdType Samples::GetNumberOfSamples() const
 
 std::size_t Samples::GetNumberOfParts() const
 {
-  return this->IsGrid ? this->Grid.GetNumberOfRows()
+  return this->TakenAs.IsGrid ? this->Grid.GetNumberOfRows()
                       : static_cast<std::size_t>(this->GetNumberOfSamples());
 }
 
-void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
+void Samples::SetGrid(vtkImageData* image)
 {
   int extent[6];
   image->GetExtent(extent);
@@ -180,13 +152,7 @@ void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
 
   // The axes of the image, those with extent first; the others keep their cyclic order.
   int order[3] = { 0, 1, 2 };
-  const int* whole = wholeExtent ? wholeExtent : extent;
-  int thick[3];
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    const int cells = whole[2 * axis + 1] - whole[2 * axis];
-    thick[axis] = this->Cells ? cells > 1 : cells > 0;
-  }
+  const bool(&thick)[3] = this->TakenAs.Thick;
   if (!thick[0] && !thick[1] && thick[2])
   {
     order[0] = 2;
@@ -195,7 +161,7 @@ void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
   }
   else
   {
-    std::stable_partition(order, order + 3, [&](int axis) { return thick[axis] != 0; });
+    std::stable_partition(order, order + 3, [&](int axis) { return thick[axis]; });
   }
   this->Dimension = thick[0] && thick[1] && thick[2] ? 3 : 2;
 
@@ -223,7 +189,36 @@ void Samples::SetGrid(vtkImageData* image, const int* wholeExtent)
     this->Grid.FirstIndex[i] = extent[2 * axis];
     this->Grid.Dimensions[i] = this->Cells ? std::max(points - 1, 1) : points;
   }
-  this->IsGrid = true;
+}
+
+void Samples::SetLeftOut(double limit)
+{
+  this->LeftOut = this->Hidden.Get(this->Cells);
+  if (!std::isfinite(limit))
+  {
+    return;
+  }
+  const vtkIdType count = this->Array->GetNumberOfTuples();
+  this->LeftOut.resize(static_cast<std::size_t>(count));
+  bool any = false;
+  constexpr vtkIdType chunkSize = 4096;
+  std::vector<double> lengths(chunkSize);
+  for (vtkIdType first = 0; first < count; first += chunkSize)
+  {
+    const vtkIdType size = std::min(chunkSize, count - first);
+    ReadLengths(this->Array, static_cast<std::size_t>(first), static_cast<std::size_t>(size),
+      lengths.data());
+    for (vtkIdType i = 0; i < size; ++i)
+    {
+      unsigned char& why = this->LeftOut[static_cast<std::size_t>(first + i)];
+      why = why ? IsHidden : lengths[i] > limit ? IsTooLong : 0;
+      any = any || why;
+    }
+  }
+  if (!any)
+  {
+    this->LeftOut.clear();
+  }
 }
 
 void Samples::SetPoints()
@@ -249,7 +244,7 @@ void Samples::SetPoints()
       [&]
       {
         this->Normals =
-          GetSlabAxis(this->DataSet) >= 0 ? this->ComputeSlabNormals() : this->ComputeNormals();
+          this->TakenAs.Slab >= 0 ? this->ComputeSlabNormals() : this->ComputeNormals();
       });
   }
   if (this->Normals)
@@ -278,6 +273,21 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
       (this->Cells || !this->Hidden.HasCell(cell));
   };
 
+  // A polygon's sides bend, but VTK takes it for flat inside.
+  const auto isCurved = [&](int type)
+  { return dimensions.IsCurved(type) && type != VTK_QUADRATIC_POLYGON; };
+  vtkSMPThreadLocal<std::shared_ptr<CurvedCell>> curvedCells;
+  const auto getCurved = [&](vtkIdType cell) -> CurvedCell*
+  {
+    if (!isCurved(this->DataSet->GetCellType(cell)))
+    {
+      return nullptr;
+    }
+    std::shared_ptr<CurvedCell>& curved = curvedCells.Local();
+    curved = curved ? curved : std::make_shared<CurvedCell>();
+    return curved->Set(this->DataSet, cell) ? curved.get() : nullptr;
+  };
+
   if (this->Cells)
   {
     vtkSMPTools::For(0, this->DataSet->GetNumberOfCells(), 1024,
@@ -289,8 +299,15 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
           Eigen::Vector3d normal = Eigen::Vector3d::Zero();
           if (isSurface(cell))
           {
-            this->DataSet->GetCellPoints(cell, ids);
-            normal = GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
+            if (CurvedCell* curved = getCurved(cell))
+            {
+              normal = curved->GetNormalAtCenter();
+            }
+            if (normal.isZero(0.0))
+            {
+              this->DataSet->GetCellPoints(cell, ids);
+              normal = GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
+            }
           }
           if (own && !normal.isZero(0.0))
           {
@@ -310,11 +327,17 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
       if (isSurface(cell))
       {
         this->DataSet->GetCellPoints(cell, ids);
-        const Eigen::Vector3d normal =
+        const Eigen::Vector3d flat =
           GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
-        for (vtkIdType i = 0; i < ids->GetNumberOfIds() && !normal.isZero(0.0); ++i)
+        CurvedCell* curved = getCurved(cell);
+        for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
         {
-          sums.Append(shares, ids->GetId(i), normal);
+          Eigen::Vector3d normal = curved ? curved->GetNormal(static_cast<int>(i)) : flat;
+          normal = normal.isZero(0.0) ? flat : normal;
+          if (!normal.isZero(0.0))
+          {
+            sums.Append(shares, ids->GetId(i), normal);
+          }
         }
       }
     });
@@ -329,8 +352,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
       normals->SetTuple(point, tuple);
     }
   }
-  // 40 degrees: facets of a round surface meet below, edges of a body above.
-  CoincidentPoints(this->DataSet, this->Hidden).Share(normals, DirectionSteps, true, 0.766);
+  CoincidentPoints(this->DataSet, this->Hidden).Share(normals, DirectionSteps, true, CreaseCosine);
   // A point of a volume is not on a surface.
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; dimensions.Has(3) && cell < this->DataSet->GetNumberOfCells(); ++cell)
@@ -351,7 +373,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
 {
   int dims[3];
   GetDimensions(this->DataSet, dims);
-  const int slab = GetSlabAxis(this->DataSet);
+  const int slab = this->TakenAs.Slab;
   const int u = (slab + 1) % 3;
   const int v = (slab + 2) % 3;
   const vtkIdType stride[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };
@@ -399,10 +421,43 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeSlabNormals() const
   return normals;
 }
 
+bool Samples::DoCellsMeet(int axis, vtkIdType cell) const
+{
+  int dims[3];
+  GetDimensions(this->DataSet, dims);
+  const vtkIdType strides[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };
+  vtkIdType corner = 0;
+  for (int i = 0; i < 3; ++i)
+  {
+    const vtkIdType cells = std::max(dims[i] - 1, 1);
+    corner += cell % cells * strides[i];
+    cell /= cells;
+  }
+  // The side of the first cell is that of the last one.
+  const int other[2] = { (axis + 1) % 3, (axis + 2) % 3 };
+  for (int n = 0; n < 4; ++n)
+  {
+    const bool along[2] = { (n & 1) != 0, (n & 2) != 0 };
+    vtkIdType first = corner;
+    for (int i = 0; i < 2; ++i)
+    {
+      first += along[i] && dims[other[i]] > 1 ? strides[other[i]] : 0;
+    }
+    Eigen::Vector3d places[2];
+    this->DataSet->GetPoint(first, places[0].data());
+    this->DataSet->GetPoint(first + (dims[axis] - 1) * strides[axis], places[1].data());
+    if (!AreSamePlaces(places[0], places[1]))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 void Samples::ComputeCurvature(double featureSize)
 {
   const vtkIdType count = this->GetNumberOfSamples();
-  if (this->IsGrid || count == 0 || !this->Field.Vectors || this->DataSet->GetNumberOfCells() == 0)
+  if (this->TakenAs.IsGrid || count == 0 || !this->Field.Vectors || this->DataSet->GetNumberOfCells() == 0)
   {
     return;
   }
@@ -413,9 +468,13 @@ void Samples::ComputeCurvature(double featureSize)
     {
       samples = this->Cells ? std::max(samples - 1, 1) : samples;
     }
-    this->Curvature =
-      ComputeStreamlineCurvature(
-      dimensions, *this->Positions, *this->Field.Vectors, this->Hidden.Get(this->Cells));
+    std::function<bool(int, vtkIdType)> cellsMeet;
+    if (this->Cells)
+    {
+      cellsMeet = [this](int axis, vtkIdType cell) { return this->DoCellsMeet(axis, cell); };
+    }
+    this->Curvature = ComputeStreamlineCurvature(
+      dimensions, *this->Positions, *this->Field.Vectors, this->LeftOut, cellsMeet);
   }
   else
   {
@@ -430,7 +489,7 @@ void Samples::ComputeCurvature(double featureSize)
 steerable::EvaluationCounts Samples::Evaluate(
   const steerable::SteerableNoise& kernel, std::size_t begin, std::size_t end, float* noise) const
 {
-  return this->IsGrid ? kernel.EvaluateImage(this->Grid, this->Field, begin, end, noise)
+  return this->TakenAs.IsGrid ? kernel.EvaluateImage(this->Grid, this->Field, begin, end, noise)
                       : kernel.EvaluatePoints(*this->Positions, this->Field, begin, end, noise);
 }
 
@@ -453,7 +512,9 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkI
       if (this->Dimension == 2)
       {
         metric.topLeftCorner<2, 2>() =
-          MetricFromTensor<2>(parameters, tensor.topLeftCorner<2, 2>()).ToMatrix();
+          MetricFromTensor<2>(parameters, tensor.topLeftCorner<2, 2>(),
+            WholeLength(tensor.topLeftCorner<2, 2>().norm(), AcrossPlane(steering + 6 * i)))
+            .ToMatrix();
       }
       else
       {
@@ -465,7 +526,10 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkI
       const Vector<3> vector = Eigen::Map<const Eigen::Vector3f>(steering + 3 * i).cast<double>();
       if (this->Dimension == 2)
       {
-        metric.topLeftCorner<2, 2>() = MetricFromVector<2>(parameters, vector.head<2>()).ToMatrix();
+        metric.topLeftCorner<2, 2>() = 
+          MetricFromVector<2>(
+            parameters, vector.head<2>(), WholeLength(vector.head<2>().norm(), vector[2]))
+            .ToMatrix();
       }
       else if (normals)
       {
@@ -560,7 +624,7 @@ bool GetNearest(vtkStaticPointLocator* locator, vtkDataSet* dataset, vtkIdType p
 } // namespace
 
 void SampleSpacing::Add(
-  vtkDataSet* dataset, bool centers, const HiddenSamples& hidden, vtkIdType cellsAtMost)
+  vtkDataSet* dataset, bool centers, int slab, const HiddenSamples& hidden, vtkIdType cellsAtMost)
 {
   if (auto* image = vtkImageData::SafeDownCast(dataset))
   {
@@ -624,7 +688,6 @@ void SampleSpacing::Add(
   }
   const CellDimensions dimensions(dataset);
   // A slab's own thickness says nothing about the distance of its samples: one side of it does.
-  const int slab = GetSlabAxis(dataset);
   int dims[3] = { 1, 1, 1 };
   GetDimensions(dataset, dims);
   const vtkIdType strides[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };

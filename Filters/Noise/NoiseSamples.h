@@ -10,10 +10,13 @@
 
 #include "NoiseArrays.h"
 #include "NoiseGhosts.h"
+#include "NoiseShape.h"
 
 #include "vtkSmartPointer.h"
 
+#include <limits>
 #include <memory>
+#include <vector>
 
 class vtkDataArray;
 class vtkDataSet;
@@ -26,13 +29,12 @@ class Samples
 {
 public:
   /**
-   * `cells`: the array belongs to the cells. `wholeExtent` tells whether an image is flat where the
-   * dataset is a piece of it; null: the dataset is all there is. `magnification`: samples of an image
+   * `cells`: the array belongs to the cells. `shape` as CommonShape has it. `magnification`: samples of an image
    * for each one that its vectors were interpolated from. `plane`: where two components lie, but flat
-   * images have them along their own axes.
+   * images have them along their own axes. Vectors longer than `limit` are left out.
    */
-  Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const int* wholeExtent,
-    int magnification, const Plane& plane = WorldPlane);
+  Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const Shape& shape, int magnification, const Plane& plane = WorldPlane,
+    double limit = std::numeric_limits<double>::infinity());
   ~Samples();
 
   vtkIdType GetNumberOfSamples() const;
@@ -49,8 +51,14 @@ public:
   /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.
   void ComputeCurvature(double featureSize);
 
-  /// What neither shows nor changes its neighbours; it gets isotropic noise.
-  const HiddenSamples& GetHidden() const { return this->Hidden; }
+  /// Why a sample has no direction and lends none to its neighbours; it gets isotropic noise.
+  enum WhyLeftOut : unsigned char
+  {
+    IsHidden = 1,
+    IsTooLong = 2
+  };
+  /// One value for each sample, 0 if it is not left out; empty where none is.
+  const std::vector<unsigned char>& GetLeftOut() const { return this->LeftOut; }
 
   /// Noise of the parts [begin, end) into an array of GetNumberOfSamples() values.
   steerable::EvaluationCounts Evaluate(const steerable::SteerableNoise& kernel, std::size_t begin,
@@ -61,8 +69,11 @@ public:
     float* metrics) const;
 
 private:
-  void SetGrid(vtkImageData* image, const int* wholeExtent);
+  void SetGrid(vtkImageData* image);
   void SetPoints();
+  void SetLeftOut(double limit);
+  /// Whether a structured grid is closed along an axis at the row with this first cell.
+  bool DoCellsMeet(int axis, vtkIdType cell) const;
   /// Unit normals of samples on cells of dimension 2, 0 for the others; null if all are.
   vtkSmartPointer<vtkFloatArray> ComputeNormals() const;
   vtkSmartPointer<vtkFloatArray> ComputeSlabNormals() const;
@@ -70,9 +81,10 @@ private:
   vtkDataSet* DataSet;
   vtkDataArray* Array;
   bool Cells;
+  Shape TakenAs;
   HiddenSamples Hidden;
+  std::vector<unsigned char> LeftOut;
   int Dimension = 3;
-  bool IsGrid = false;
   steerable::ImageGrid Grid;
   Axes InAxes = WorldAxes;
   steerable::Field Field;
@@ -100,9 +112,10 @@ struct SampleSpacing
    * the spacing of a lattice with the same number of samples and the same variance of their places along
    * each axis; strips and lines count as their triangles and segments, polygons by their edges, and
    * vertices by the distance of the nearest other place. Ghosts and hidden cells are left out, and of more
-   * than `cellsAtMost` cells an even choice is looked at.
+   * than `cellsAtMost` cells an even choice is looked at. `slab`: Shape's.
    */
-  void Add(vtkDataSet* dataset, bool centers, const HiddenSamples& hidden, vtkIdType cellsAtMost);
+  void Add(vtkDataSet* dataset, bool centers, int slab, const HiddenSamples& hidden,
+    vtkIdType cellsAtMost);
 };
 } // namespace noise
 

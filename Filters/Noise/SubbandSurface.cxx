@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SubbandSurface.h"
 
+#include "CellSums.h"
+#include "NoiseCopies.h"
+#include "NoiseGhosts.h"
 #include "NoiseThreads.h"
 
 #include "vtkCell.h"
@@ -88,6 +91,12 @@ int SurfaceSums::BinOf(double octaves)
   return static_cast<int>(bin > 0.0 ? std::min(bin, Bins - 1.0) : 0.0);
 }
 
+double SurfaceSums::RoundArea(double area, double diagonal)
+{
+  const double unit = diagonal * diagonal * std::ldexp(1.0, -40);
+  return unit > 0.0 ? std::round(area / unit) : 0.0;
+}
+
 //------------------------------------------------------------------------------
 SubbandSurface::SubbandSurface(vtkPolyData* mesh, vtkDataArray* texture, bool wrapSeams)
 {
@@ -125,19 +134,44 @@ SubbandSurface::SubbandSurface(vtkPolyData* mesh, vtkDataArray* texture, bool wr
   {
     this->JoinSeams();
   }
+  else if (this->Normals.empty())
+  {
+    this->ShareNormals(mesh);
+  }
+}
+
+//------------------------------------------------------------------------------
+void SubbandSurface::ShareNormals(vtkPolyData* mesh)
+{
+  auto shared = NewOutputArray("Normals", 3, this->GetNumberOfPoints());
+  for (vtkIdType point = 0; point < this->GetNumberOfPoints(); ++point)
+  {
+    Eigen::Vector3d normal;
+    this->GetNormal(point, normal); // 0 where there is none
+    shared->SetTuple(point, normal.allFinite() ? normal.data() : Eigen::Vector3d::Zero().eval().data());
+  }
+  const CoincidentPoints copies(mesh, HiddenSamples(mesh));
+  WithThreads([&] { copies.Share(shared, DirectionSteps, true, CreaseCosine); });
+  // Where there are no copies it stays empty, and normals come from the triangles.
+  for (const vtkIdType point : copies.GetPoints())
+  {
+    this->Normals.resize(this->Points.size(), Eigen::Vector3d::Zero());
+    shared->GetTuple(point, this->Normals[point].data());
+  }
 }
 
 //------------------------------------------------------------------------------
 void SubbandSurface::Triangulate(vtkPolyData* mesh)
 {
   vtkUnsignedCharArray* ghosts = mesh->GetCellGhostArray();
+  const HiddenSamples hidden(mesh);
   const vtkIdType points = mesh->GetNumberOfPoints();
   const auto inside = [points](vtkIdType id) { return id >= 0 && id < points; };
   const auto add = [&](vtkIdType cell, vtkIdType a, vtkIdType b, vtkIdType c)
   {
     const unsigned char ghost =
       ghosts && cell < ghosts->GetNumberOfTuples() ? ghosts->GetValue(cell) : 0;
-    if (inside(a) && inside(b) && inside(c) && !(ghost & vtkDataSetAttributes::HIDDENCELL))
+    if (inside(a) && inside(b) && inside(c) && !hidden.HasCell(cell))
     {
       this->Triangles.push_back({ { a, b, c }, cell, ghost != 0 });
     }
@@ -317,7 +351,6 @@ void SubbandSurface::JoinSeams()
 //------------------------------------------------------------------------------
 void SubbandSurface::AddTo(SurfaceSums& sums, double diagonal) const
 {
-  const double unit = diagonal * diagonal * std::ldexp(1.0, -40);
   for (std::size_t t = 0; t < this->Triangles.size(); ++t)
   {
     const Triangle& triangle = this->Triangles[t];
@@ -325,7 +358,7 @@ void SubbandSurface::AddTo(SurfaceSums& sums, double diagonal) const
     {
       continue;
     }
-    const double area = unit > 0.0 ? std::round(triangle.Area / unit) : 0.0;
+    const double area = SurfaceSums::RoundArea(triangle.Area, diagonal);
     sums[SurfaceSums::Triangles] += 1.0;
     sums[SurfaceSums::Area] += area;
     if (!(triangle.Area > 0.0))
@@ -349,6 +382,51 @@ void SubbandSurface::AddTo(SurfaceSums& sums, double diagonal) const
       sums.Larger()[SurfaceSums::BinOf(std::log2(values[1]))] += area;
     }
   }
+}
+
+//------------------------------------------------------------------------------
+SubbandSurface::Charts SubbandSurface::FindChartsBelow(double side) const
+{
+  // Points of one chart lead to the same root.
+  std::vector<vtkIdType> parents(this->Points.size());
+  std::iota(parents.begin(), parents.end(), 0);
+  const auto rootOf = [&](vtkIdType point)
+  {
+    while (parents[point] != point)
+    {
+      parents[point] = parents[parents[point]];
+      point = parents[point];
+    }
+    return point;
+  };
+  for (vtkIdType point = 0; point < this->GetNumberOfPoints(); ++point)
+  {
+    parents[rootOf(point)] = rootOf(this->NextCopy[point]);
+  }
+  for (const Triangle& triangle : this->Triangles)
+  {
+    parents[rootOf(triangle.Points[1])] = rootOf(triangle.Points[0]);
+    parents[rootOf(triangle.Points[2])] = rootOf(triangle.Points[0]);
+  }
+  std::vector<double> areas(this->Points.size(), 0.0); // at the roots
+  for (const Triangle& triangle : this->Triangles)
+  {
+    areas[rootOf(triangle.Points[0])] += triangle.Area;
+  }
+  const auto isSmall = [&](vtkIdType root)
+  { return areas[root] > 0.0 && areas[root] < side * side; };
+  Charts charts;
+  for (const Triangle& triangle : this->Triangles)
+  {
+    const double area = triangle.Ghost ? 0.0 : triangle.Area;
+    charts.WholeArea += area;
+    charts.Area += isSmall(rootOf(triangle.Points[0])) ? area : 0.0;
+  }
+  for (vtkIdType point = 0; point < this->GetNumberOfPoints(); ++point)
+  {
+    charts.Count += parents[point] == point && isSmall(point) ? 1.0 : 0.0;
+  }
+  return charts;
 }
 
 //------------------------------------------------------------------------------

@@ -56,6 +56,8 @@ struct SurfaceSums
   const double* Larger() const { return this->Values.data() + EntryCount + Bins; }
 
   static int BinOf(double octaves);
+  /// In units of the squared diagonal times 2^-40.
+  static double RoundArea(double area, double diagonal);
   static double OctavesOf(int bin) { return (bin + 0.5) / BinsPerOctave - 0.5 * Octaves; }
 };
 
@@ -82,6 +84,16 @@ public:
 
   /// Adds the triangles that are not ghosts. `diagonal` of the bounds of all surfaces.
   void AddTo(SurfaceSums& sums, double diagonal) const;
+
+  /// Charts: triangles joined by points at which the texture does not jump.
+  struct Charts
+  {
+    double Count = 0.0;
+    double Area = 0.0;
+    double WholeArea = 0.0; ///< Of all charts.
+  };
+  /// Those whose area is less than that of a square with this side. Ghosts have a part in charts, but no area.
+  Charts FindChartsBelow(double side) const;
 
   /// Triangles of this mapping count only where a point has no others.
   void Avoid(steerable::TriangleMapping mapping) { this->Avoided = mapping; }
@@ -129,6 +141,7 @@ private:
   void MeasureTriangles(bool wrapSeams);
   void LinkPoints();
   void JoinSeams();
+  void ShareNormals(vtkPolyData* mesh);
 
   std::vector<Eigen::Vector3d> Points;
   std::vector<Eigen::Vector2d> Texture;

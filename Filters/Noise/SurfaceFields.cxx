@@ -160,7 +160,7 @@ SurfaceFields ComputeSurfaceFields(
   }
   if (IsVector(components))
   {
-    Samples samples(surface, fields.Steering, cells && perCell, nullptr, 1);
+    Samples samples(surface, fields.Steering, cells && perCell, Shape(), 1);
     // Curvatures are summed in steps of a millionth of this cell's: fine enough for streaks of any size.
     double bounds[6];
     surface->GetBounds(bounds);

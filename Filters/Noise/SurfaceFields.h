@@ -50,7 +50,7 @@ STEERABLENOISEFILTERS_EXPORT SurfaceFields ComputeSurfaceFields(
 /**
  * The array of a dataset that steers noise, as vtkAlgorithm::SetInputArrayToProcess chose it in `choice`, on
  * the association that was asked for or else on the other; `cells` tells on which. Where no name was given:
- * active vectors, active tensors, or the first floating-point array of 3 components. Null, with `why` in a
+ * the choice of SteeringChoice.h. Null, with `why` in a
  * sentence that says what to do, where there is none that can be used.
  */
 STEERABLENOISEFILTERS_EXPORT vtkDataArray* FindSteeringArray(

@@ -3,6 +3,8 @@
 #include "vtkPolyDataSubbandNoise.h"
 
 #include "NoiseArrays.h"
+#include "NoiseBounds.h"
+#include "NoiseGhosts.h"
 #include "NoiseThreads.h"
 #include "SubbandNames.h"
 #include "SubbandSurface.h"
@@ -97,43 +99,6 @@ struct PointCounts
     this->Finer = std::max(this->Finer, other.Finer);
     this->Coarser = std::max(this->Coarser, other.Coarser);
     return *this;
-  }
-};
-
-/// Union of bounds over blocks and ranks: the lower corner, then the negated upper one.
-struct CommonBounds
-{
-  double Values[6];
-
-  CommonBounds() { std::fill_n(this->Values, 6, std::numeric_limits<double>::infinity()); }
-
-  void Add(vtkPolyData* mesh)
-  {
-    if (mesh->GetNumberOfPoints() == 0)
-    {
-      return;
-    }
-    double bounds[6];
-    mesh->GetBounds(bounds);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (std::isfinite(bounds[2 * axis]) && std::isfinite(bounds[2 * axis + 1]))
-      {
-        this->Values[axis] = std::min(this->Values[axis], bounds[2 * axis]);
-        this->Values[3 + axis] = std::min(this->Values[3 + axis], -bounds[2 * axis + 1]);
-      }
-    }
-  }
-
-  double Diagonal() const
-  {
-    double sum = 0.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      const double length = -this->Values[3 + axis] - this->Values[axis];
-      sum += std::isfinite(length) ? length * length : 0.0;
-    }
-    return std::isfinite(sum) ? std::sqrt(sum) : 0.0;
   }
 };
 
@@ -376,6 +341,7 @@ struct Evaluator
     std::vector<vtkIdType> Points; // within the chunk
     std::vector<Eigen::Vector2d> Texture;
     std::vector<double> Gamma;
+    std::vector<double> Blends; // of the tiles of several planes
     std::vector<Eigen::Matrix2d> Footprints;
 
     void Clear()
@@ -383,6 +349,7 @@ struct Evaluator
       this->Points.clear();
       this->Texture.clear();
       this->Gamma.clear();
+      this->Blends.clear();
       this->Footprints.clear();
     }
   };
@@ -403,6 +370,7 @@ struct Evaluator
     plane.Points.push_back(point);
     plane.Texture.push_back(texture);
     plane.Footprints.push_back(footprint);
+    plane.Blends.push_back(blend);
     for (int c = 0; c < components; ++c)
     {
       plane.Gamma.push_back(blend * gamma[c]);
@@ -541,20 +509,24 @@ struct Evaluator
         weights.resize(components * points);
         values.resize(points);
         double beta[MaximumBands];
-        std::fill_n(beta, MaximumBands, 1.0);
         for (std::size_t n = 0; n < points; ++n)
         {
           uv[2 * n] = scale * plane.Texture[n][0] + shift[0];
           uv[2 * n + 1] = scale * plane.Texture[n][1] + shift[1];
+          std::fill_n(beta, components, 1.0);
           if (this->AntiAlias)
           {
             this->Weights.Antialias(plane.Footprints[n] * (scale * scale), beta);
           }
           for (int c = 0; c < components; ++c)
           {
-            weights[n * components + c] =
-              static_cast<float>(plane.Gamma[n * components + c] * beta[c]);
+            beta[c] *= plane.Gamma[n * components + c];
           }
+          if (this->AntiAlias)
+          {
+            this->Weights.LimitVariance(plane.Blends[n] * plane.Blends[n], beta);
+          }
+          std::copy(beta, beta + components, weights.begin() + n * components);
         }
         steerable::SumSubbands(this->Tiles[axis], steerable::TileLookup::CatmullRom, points,
           uv.data(), weights.data(), values.data());
@@ -764,7 +736,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   BlockFinder finder(this, this->GetInputArrayInformation(0));
   std::vector<Block> blocks;
   SurfaceSums sums;
-  CommonBounds bounds;
+  noise::CommonBounds bounds;
   vtkIdType blocksWithout = 0;
   std::string otherType;
   const auto addMesh = [&](vtkPolyData* mesh)
@@ -777,7 +749,7 @@ int vtkPolyDataSubbandNoise::RequestData(
     }
     if (finder.Find(block))
     {
-      bounds.Add(mesh);
+      bounds.Add(mesh, noise::HiddenSamples(mesh));
       blocks.push_back(std::move(block));
     }
     else
@@ -816,8 +788,8 @@ int vtkPolyDataSubbandNoise::RequestData(
   }
 
   // Everything that ranks do together comes before anything that may fail on one of them.
-  Reduce(this->Controller, bounds.Values, 6, vtkCommunicator::MIN_OP);
-  const double diagonal = bounds.Diagonal();
+  bounds.Reduce(this->Controller);
+  const double diagonal = bounds.GetDiagonal();
   std::string failure;
   try
   {
@@ -856,10 +828,26 @@ int vtkPolyDataSubbandNoise::RequestData(
   double wavelength = this->Wavelength;
   if (wavelength <= 0.0)
   {
-    wavelength = std::max(diagonal / 50.0, PointsPerWavelength * spacing * std::sqrt(anisotropy));
+    wavelength = std::max(bounds.GetSizeInPicture(0.02),
+      noise::SnapSize(PointsPerWavelength * spacing * std::sqrt(anisotropy)));
     wavelength = wavelength > 0.0 ? wavelength : 1.0;
   }
   this->ResolvedWavelength = wavelength;
+
+  // Charts smaller than a wavelength leave no noise but seams.
+  double charts[3] = { 0.0, 0.0, 0.0 }; // their area, that of all, and their number
+  for (const Block& block : blocks)
+  {
+    if (this->Parameterization == AUTOMATIC && block.Texture)
+    {
+      const SubbandSurface::Charts small = block.Surface->FindChartsBelow(wavelength);
+      charts[0] += SurfaceSums::RoundArea(small.Area, diagonal);
+      charts[1] += SurfaceSums::RoundArea(small.WholeArea, diagonal);
+      charts[2] += small.Count;
+    }
+  }
+  Reduce(this->Controller, charts, 3, vtkCommunicator::SUM_OP);
+  const bool shattered = charts[0] > 0.5 * charts[1];
 
   const double mapped = sums[SurfaceSums::RegularArea] + sums[SurfaceSums::FlippedArea];
   const bool mirrored = sums[SurfaceSums::FlippedArea] > 0.5 * mapped;
@@ -881,6 +869,11 @@ int vtkPolyDataSubbandNoise::RequestData(
     for (std::size_t b = 0; b < blocks.size() && !this->GetAbortOutput(); ++b)
     {
       Block& block = blocks[b];
+      if (shattered && block.Texture)
+      {
+        block.Texture = nullptr;
+        block.Surface = std::make_unique<SubbandSurface>(block.Mesh, nullptr, this->WrapSeams);
+      }
       const bool textured = block.Texture != nullptr;
       if (textured && folds)
       {
@@ -907,7 +900,8 @@ int vtkPolyDataSubbandNoise::RequestData(
       if (block.Vectors)
       {
         const auto tuples = static_cast<std::size_t>(block.Vectors->GetNumberOfTuples());
-        reader = noise::MakeVectorReader(block.Vectors, noise::WorldAxes, false);
+        reader =
+          noise::MakeVectorReader(block.Vectors, noise::WorldAxes, false, bounds.GetPlane());
         scratch.resize(3 * tuples);
         vectors.Values = reader->Read(0, tuples, scratch.data());
         vectors.Cells = block.CellVectors;
@@ -959,7 +953,13 @@ int vtkPolyDataSubbandNoise::RequestData(
 
   // One warning that says everything.
   std::ostringstream message;
-  if (textureRepeats < 1.0 && local[SurfaceSums::TexturedBlocks] > 0.0)
+  if (shattered)
+  {
+    message << "\nMost of the surface lies in charts of the texture that are smaller than a wavelength ("
+            << charts[2] << " of them): planar projections took its place. Lower Wavelength, or set "
+               "Parameterization to Texture Coordinates to have it all the same.";
+  }
+  if (!shattered && textureRepeats < 1.0 && local[SurfaceSums::TexturedBlocks] > 0.0)
   {
     message << "\nThe wavelength is long for the texture: a tile is spread over "
             << std::round(1.0 / textureRepeats)
@@ -967,8 +967,9 @@ int vtkPolyDataSubbandNoise::RequestData(
                "coordinates down.";
   }
   const double triangles = local[SurfaceSums::Triangles];
-  const double flipped = local[mirrored ? SurfaceSums::Regular : SurfaceSums::Flipped];
-  const double singular = local[SurfaceSums::Singular];
+  const double flipped =
+    shattered ? 0.0 : local[mirrored ? SurfaceSums::Regular : SurfaceSums::Flipped];
+  const double singular = shattered ? 0.0 : local[SurfaceSums::Singular];
   const double degenerate = local[SurfaceSums::Degenerate];
   if ((folds && flipped > 0.0) || singular > 0.0 || degenerate > 0.0)
   {

@@ -67,7 +67,8 @@ public:
   ///@{
   /**
    * Wavelength in world units. 0, the default: 1/50 of the diagonal of the bounds of all blocks on all
-   * ranks, but the thinnest features not finer than 8 point spacings. Negative values are clamped to 0.
+   * ranks, at most 1/4 of their second longest side, but the thinnest features not finer than 8 point spacings;
+   * rounded to a power of the fourth root of 2. Negative values are clamped to 0.
    */
   vtkSetClampMacro(Wavelength, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(Wavelength, double);
@@ -85,7 +86,7 @@ public:
   ///@{
   /**
    * Where tiles are looked up: AUTOMATIC, the default: at a surface's texture coordinates if it has
-   * them, else TRIPLANAR; TEXTURE_COORDINATES: an error without them; TRIPLANAR: always projections.
+   * them, and most of it is not in charts smaller than a wavelength, else TRIPLANAR; TEXTURE_COORDINATES: an error without them; TRIPLANAR: always projections.
    */
   vtkSetClampMacro(Parameterization, int, AUTOMATIC, TRIPLANAR);
   vtkGetMacro(Parameterization, int);

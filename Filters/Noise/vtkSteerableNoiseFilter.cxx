@@ -3,13 +3,14 @@
 #include "vtkSteerableNoiseFilter.h"
 
 #include "NoiseArrays.h"
+#include "NoiseBounds.h"
 #include "NoiseGhosts.h"
 #include "NoiseImages.h"
+#include "NoiseLengths.h"
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
 #include "SurfaceFields.h"
 
-#include "vtkBoundingBox.h"
 #include "vtkCellData.h"
 #include "vtkCommunicator.h"
 #include "vtkCompositeDataIterator.h"
@@ -20,12 +21,10 @@
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
-#include "vtkMath.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkRectilinearGrid.h"
-#include "vtkSMPThreadLocal.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
 #include "vtkUnsignedCharArray.h"
@@ -49,107 +48,44 @@ struct Block
   vtkDataSet* DataSet = nullptr;
   vtkDataArray* Array = nullptr;
   bool Cells = false;
-};
+  noise::Shape Shape;
+  /// What a magnified image was made from: interpolated lengths lie between those that are there.
+  vtkDataSet* Original = nullptr;
+  vtkDataArray* OriginalArray = nullptr;
 
-/// Length of the longest finite tuple that is not hidden.
-double GetLongest(vtkDataArray* array, const std::vector<unsigned char>& hidden)
-{
-  constexpr vtkIdType chunkSize = 4096;
-  vtkSMPThreadLocal<double> longest(0.0);
-  double all = 0.0;
-  noise::WithThreads(
-    [&]
-    {
-      vtkSMPTools::For(0, array->GetNumberOfTuples(), 16 * chunkSize,
-        [&](vtkIdType begin, vtkIdType end)
-        {
-          double& longestHere = longest.Local();
-          std::vector<double> lengths(chunkSize);
-          for (vtkIdType first = begin; first < end; first += chunkSize)
-          {
-            const vtkIdType count = std::min(chunkSize, end - first);
-            noise::ReadLengths(array, first, count, lengths.data());
-            for (vtkIdType i = 0; i < count; ++i)
-            {
-              if (std::isfinite(lengths[i]) && (hidden.empty() || !hidden[first + i]))
-              {
-                longestHere = std::max(longestHere, lengths[i]);
-              }
-            }
-          }
-        });
-      // In here: each backend has thread-local values of its own, and the sequential one none of these.
-      for (const double here : longest)
-      {
-        all = std::max(all, here);
-      }
-    });
-  return all;
-}
+  vtkDataSet* GetOriginal() const { return this->Original ? this->Original : this->DataSet; }
+  vtkDataArray* GetOriginalArray() const
+  {
+    return this->OriginalArray ? this->OriginalArray : this->Array;
+  }
+};
 
 /// What the ranks have to agree on; all of it combines by minimum or sum.
 struct Extremes
 {
-  double Bounds[6]; // lower corner, then the negated upper one
-  double LongestVector = 0.0;
+  noise::CommonBounds Bounds;
   noise::SampleSpacing Spacing;
 
-  Extremes() { std::fill_n(this->Bounds, 6, std::numeric_limits<double>::infinity()); }
-
-  /// `magnitude`: the longest vector is asked for. `exact`: the spacing decides more than a warning.
-  void Add(const Block& block, bool magnitude, bool exact)
+  /// `exact`: the spacing decides more than a warning.
+  void Add(const Block& block, bool exact)
   {
     const noise::HiddenSamples hidden(block.DataSet);
-    if (block.DataSet->GetNumberOfPoints() > 0)
-    {
-      double bounds[6];
-      block.DataSet->GetBounds(bounds);
-      const std::vector<unsigned char>& hiddenPoints = hidden.Get(false);
-      if (!hiddenPoints.empty())
-      {
-        vtkBoundingBox visible;
-        for (vtkIdType point = 0; point < block.DataSet->GetNumberOfPoints(); ++point)
-        {
-          if (!hiddenPoints[point])
-          {
-            visible.AddPoint(block.DataSet->GetPoint(point));
-          }
-        }
-        visible.IsValid() ? visible.GetBounds(bounds) : vtkMath::UninitializeBounds(bounds);
-      }
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        if (bounds[2 * axis] <= bounds[2 * axis + 1] && std::isfinite(bounds[2 * axis]) &&
-          std::isfinite(bounds[2 * axis + 1]))
-        {
-          this->Bounds[axis] = std::min(this->Bounds[axis], bounds[2 * axis]);
-          this->Bounds[3 + axis] = std::min(this->Bounds[3 + axis], -bounds[2 * axis + 1]);
-        }
-      }
-    }
-    if (magnitude)
-    {
-      this->LongestVector =
-        std::max(this->LongestVector, GetLongest(block.Array, hidden.Get(block.Cells)));
-    }
-    this->Spacing.Add(block.DataSet, block.Cells, hidden, exact ? 1000000 : 10000);
+    this->Bounds.Add(block.DataSet, hidden);
+    this->Spacing.Add(block.DataSet, block.Cells, block.Shape.Slab, hidden, exact ? 1000000 : 10000);
   }
 
   void Reduce(vtkMultiProcessController* controller)
   {
+    this->Bounds.Reduce(controller);
     if (!controller || controller->GetNumberOfProcesses() < 2)
     {
       return;
     }
-    double least[10];
-    std::copy_n(this->Bounds, 6, least);
-    least[6] = -this->LongestVector;
-    std::transform(this->Spacing.Largest, this->Spacing.Largest + 3, least + 7, std::negate<>());
-    double all[10];
-    controller->AllReduce(least, all, 10, vtkCommunicator::MIN_OP);
-    std::copy_n(all, 6, this->Bounds);
-    this->LongestVector = -all[6];
-    std::transform(all + 7, all + 10, this->Spacing.Largest, std::negate<>());
+    double least[3];
+    std::transform(this->Spacing.Largest, this->Spacing.Largest + 3, least, std::negate<>());
+    double all[3];
+    controller->AllReduce(least, all, 3, vtkCommunicator::MIN_OP);
+    std::transform(all, all + 3, this->Spacing.Largest, std::negate<>());
     double sums[4];
     std::copy_n(this->Spacing.Sum, 3, sums);
     sums[3] = this->Spacing.Count;
@@ -157,25 +93,6 @@ struct Extremes
     controller->AllReduce(sums, total, 4, vtkCommunicator::SUM_OP);
     std::copy_n(total, 3, this->Spacing.Sum);
     this->Spacing.Count = total[3];
-  }
-
-  /// Side of the bounds along an axis, 0 if there is none.
-  double GetSide(int axis) const
-  {
-    const double side = -this->Bounds[3 + axis] - this->Bounds[axis];
-    return std::isfinite(side) ? side : 0.0;
-  }
-
-  /**
-   * The largest size of which a picture of the whole shows enough: an eighth of the second longest side of
-   * the bounds. The longest may have another unit (metres of depth beside degrees), and one of less than
-   * a ten-thousandth of it is not seen.
-   */
-  double GetLargestSize() const
-  {
-    double sides[3] = { this->GetSide(0), this->GetSide(1), this->GetSide(2) };
-    std::sort(sides, sides + 3, std::greater<>());
-    return 0.125 * (sides[1] > 1e-4 * sides[0] ? sides[1] : sides[0]);
   }
 
   /**
@@ -187,7 +104,7 @@ struct Extremes
   {
     double spacing[3];
     double smallest = std::numeric_limits<double>::infinity();
-    const double longest = std::max({ this->GetSide(0), this->GetSide(1), this->GetSide(2) });
+    const double longest = this->Bounds.GetLongestSide();
     for (int axis = 0; axis < 3; ++axis)
     {
       double mean = this->Spacing.Count > 0.0 ? this->Spacing.Sum[axis] / this->Spacing.Count : 0.0;
@@ -197,12 +114,12 @@ struct Extremes
         mean = std::round(mean / unit) * unit;
       }
       spacing[axis] = std::max(mean, this->Spacing.Largest[axis]);
-      if (spacing[axis] > 0.0 && this->GetSide(axis) > 1e-4 * longest)
+      if (spacing[axis] > 0.0 && this->Bounds.GetSide(axis) > 1e-4 * longest)
       {
         smallest = std::min(smallest, spacing[axis]);
       }
     }
-    const double most = std::max(0.25 * this->GetLargestSize(), 2.0 * smallest);
+    const double most = std::max(0.25 * this->Bounds.GetLargestSize(), 2.0 * smallest);
     double largest = 0.0;
     for (const double here : spacing)
     {
@@ -211,36 +128,12 @@ struct Extremes
     return largest;
   }
 
-  /// The coordinate plane that all data lie in; x and y if there is none.
-  noise::Plane GetPlane() const
-  {
-    const double longest = std::max({ this->GetSide(0), this->GetSide(1), this->GetSide(2) });
-    const auto flat = [&](int axis) { return this->GetSide(axis) <= 1e-6 * longest; };
-    if (flat(2) || flat(0) == flat(1))
-    {
-      return noise::WorldPlane;
-    }
-    return { flat(0) ? 1 : 0, 2 };
-  }
-
   /// The smallest FeatureSize that the samples carry; 0 if they are nowhere.
-  double GetSmallestSize() const { return Snap(4.0 * this->GetSampleSpacing()); }
+  double GetSmallestSize() const { return noise::SnapSize(4.0 * this->GetSampleSpacing()); }
 
   double GetAutomaticSize() const
   {
-    const double diagonal = std::hypot(this->GetSide(0), this->GetSide(1), this->GetSide(2));
-    return std::max(
-      Snap(std::min(0.01 * diagonal, this->GetLargestSize())), this->GetSmallestSize());
-  }
-
-private:
-  /**
-   * The nearest power of the fourth root of 2: sizes that differ a little, between the steps of a series or
-   * the places of a slice, become the same, and streaks stay where they are.
-   */
-  static double Snap(double size)
-  {
-    return size > 0.0 ? std::exp2(std::round(4.0 * std::log2(size)) / 4.0) : 0.0;
+    return std::max(this->Bounds.GetSizeInPicture(0.01), this->GetSmallestSize());
   }
 };
 
@@ -272,7 +165,7 @@ constexpr const char* HyperTreeGridMessage =
   "(vtkHyperTreeGridToUnstructuredGrid) first, or Resample To Image.";
 
 /// Degenerate samples are counted by the kernel with the ghosts; these are the duplicates among them.
-vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned char>& hidden)
+vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned char>& leftOut)
 {
   vtkUnsignedCharArray* ghosts = noise::GetGhosts(
     GetAttributes(block.DataSet, block.Cells), block.Array->GetNumberOfTuples());
@@ -284,7 +177,7 @@ vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned c
   double tuple[9];
   for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
   {
-    if (ghosts->GetValue(i) && (hidden.empty() || !hidden[i]))
+    if (ghosts->GetValue(i) && (leftOut.empty() || !leftOut[i]))
     {
       block.Array->GetTuple(i, tuple);
       double length = 0.0;
@@ -297,6 +190,90 @@ vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned c
   }
   return count;
 }
+
+/// How long the vectors of all blocks and ranks are, and which of them are left out.
+struct Lengths
+{
+  /// Longer ones are left out; infinite: none is.
+  double Limit;
+  /// The longest of the others, where it was asked for.
+  double Longest = 0.0;
+  noise::FarAbove FarAbove;
+  /// Their component of the largest amount.
+  double FarValue = 0.0;
+
+  /// `limit`: MaskUpperThreshold, 0 where fill values are to be found.
+  Lengths(const std::vector<Block>& blocks, bool longest, double limit,
+    vtkMultiProcessController* controller)
+    : Limit(limit > 0.0 ? limit : std::numeric_limits<double>::infinity())
+    , Controller(controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr)
+  {
+    if (!longest && (limit > 0.0 || !this->AreAnyFar(blocks)))
+    {
+      return; // nobody asks
+    }
+    noise::LengthOctaves octaves;
+    for (const Block& block : blocks)
+    {
+      const noise::HiddenSamples hidden(block.GetOriginal());
+      octaves.Add(block.GetOriginalArray(), hidden.Get(block.Cells), this->Limit);
+    }
+    if (this->Controller)
+    {
+      octaves.Reduce(this->Controller);
+    }
+    if (limit <= 0.0)
+    {
+      this->FarAbove = octaves.FindFarAbove();
+      this->Limit = this->FarAbove.Fill ? this->FarAbove.Rest : this->Limit;
+      this->FarValue = this->FarAbove.Count > 0.0 ? this->FindFarValue(blocks) : 0.0;
+    }
+    this->Longest = octaves.GetLongest(this->Limit);
+  }
+
+private:
+  bool AreAnyFar(const std::vector<Block>& blocks) const
+  {
+    int any = std::any_of(blocks.begin(), blocks.end(),
+      [](const Block& block) { return noise::MayHoldFarAbove(block.GetOriginalArray()); });
+    if (this->Controller)
+    {
+      const int here = any;
+      this->Controller->AllReduce(&here, &any, 1, vtkCommunicator::MAX_OP);
+    }
+    return any != 0;
+  }
+
+  double FindFarValue(const std::vector<Block>& blocks) const
+  {
+    double ends[2] = { 0.0, 0.0 }; // up and down
+    for (const Block& block : blocks)
+    {
+      vtkDataArray* array = block.GetOriginalArray();
+      const noise::HiddenSamples hidden(block.GetOriginal());
+      const std::vector<unsigned char>& left = hidden.Get(block.Cells);
+      for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+      {
+        double length;
+        noise::ReadLengths(array, static_cast<std::size_t>(i), 1, &length);
+        if (length > this->FarAbove.Rest && std::isfinite(length) && (left.empty() || !left[i]))
+        {
+          const double value = noise::GetLargestComponent(array, i);
+          ends[0] = std::max(ends[0], value);
+          ends[1] = std::max(ends[1], -value);
+        }
+      }
+    }
+    if (this->Controller)
+    {
+      const double here[2] = { ends[0], ends[1] };
+      this->Controller->AllReduce(here, ends, 2, vtkCommunicator::MAX_OP);
+    }
+    return ends[0] >= ends[1] ? ends[0] : -ends[1];
+  }
+
+  vtkMultiProcessController* Controller;
+};
 } // namespace
 
 struct vtkSteerableNoiseFilter::Internals
@@ -304,7 +281,10 @@ struct vtkSteerableNoiseFilter::Internals
   vtkSteerableNoiseFilter* Self = nullptr;
   steerable::EvaluationCounts Counts;
   vtkIdType Samples = 0;
+  vtkIdType TooLong = 0;
   vtkIdType BlocksWithout = 0;
+  /// Of an AMR, which Magnification leaves alone.
+  vtkIdType ImagesAsTheyAre = 0;
   /// Why the last of them could not be used.
   std::string Why;
 
@@ -351,9 +331,11 @@ struct vtkSteerableNoiseFilter::Internals
   }
 
   void Process(const Block& block, const steerable::NoiseParameters& parameters,
-    const noise::Plane& plane, const int* wholeExtent, int magnification, double progressStart, double progressShare)
+    const noise::Plane& plane, double limit, int magnification,
+    double progressStart, double progressShare)
   {
-    noise::Samples samples(block.DataSet, block.Array, block.Cells, wholeExtent, magnification, plane);
+    noise::Samples samples(
+      block.DataSet, block.Array, block.Cells, block.Shape, magnification, plane, limit);
     const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
     if (parameters.FollowCurvature)
     {
@@ -371,17 +353,25 @@ struct vtkSteerableNoiseFilter::Internals
       return; // half an array is none
     }
     this->Samples += samples.GetNumberOfSamples();
-    // What is hidden has no direction; with a mask it is stagnant.
-    const std::vector<unsigned char>& hidden = samples.GetHidden().Get(block.Cells);
+    // What is left out has no direction; with a mask it is stagnant.
+    const std::vector<unsigned char>& leftOut = samples.GetLeftOut();
     const auto leave = [](std::uint64_t& count, std::uint64_t out)
     { count -= std::min(count, out); };
     leave(parameters.MaskThreshold > 0.0 ? counts.Stagnant : counts.Degenerate,
-      hidden.size() - std::count(hidden.begin(), hidden.end(), 0));
+      leftOut.size() - std::count(leftOut.begin(), leftOut.end(), 0));
     if (counts.Degenerate > 0)
     {
-      leave(counts.Degenerate, CountDegenerateGhosts(block, hidden));
+      leave(counts.Degenerate, CountDegenerateGhosts(block, leftOut));
     }
     this->Counts += counts;
+    for (std::size_t i = 0; i < leftOut.size(); ++i)
+    {
+      if (leftOut[i] == noise::Samples::IsTooLong)
+      {
+        values[i] = 0.0f;
+        ++this->TooLong;
+      }
+    }
 
     vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
     if (this->Self->OutputMetric)
@@ -398,10 +388,27 @@ struct vtkSteerableNoiseFilter::Internals
     attributes->SetActiveScalars(this->Self->ResultArrayName);
   }
 
-  void Report(
-    const Extremes& extremes, const steerable::NoiseParameters& parameters, bool composite)
+  void Report(const Extremes& extremes, const Lengths& lengths, const steerable::NoiseParameters& parameters, bool composite)
   {
     std::ostringstream message;
+    const noise::FarAbove& farAbove = lengths.FarAbove;
+    if (farAbove.Fill)
+    {
+      message << "\n"
+              << this->TooLong << " samples hold " << lengths.FarValue
+              << ", far more than all others (the longest vector is " << farAbove.Longest
+              << ", the next " << farAbove.Rest
+              << "), as values do that stand for missing ones: they got 0 and count for nothing. "
+                 "MaskUpperThreshold sets the limit by hand; 1e300 takes all of them.";
+    }
+    else if (farAbove.Count > 0.0)
+    {
+      message << "\n"
+              << farAbove.Count << " vectors are far longer than all others: with components up to "
+              << lengths.FarValue << ", " << farAbove.Longest << " long, the next " << farAbove.Rest
+              << ". If they stand for missing values, set MaskUpperThreshold "
+              << 2.0 * farAbove.Rest << ".";
+    }
     if (this->Counts.Degenerate > 0)
     {
       message << "\n"
@@ -414,6 +421,12 @@ struct vtkSteerableNoiseFilter::Internals
       message << "\n"
               << this->BlocksWithout
               << " block(s) have no usable array and were passed on without noise. " << this->Why;
+    }
+    if (this->ImagesAsTheyAre > 0)
+    {
+      message << "\nMagnification leaves the " << this->ImagesAsTheyAre
+              << " images of an AMR as they are: its levels say how fine they are. Resample to Image, or "
+                 "Extract Level and Merge Blocks, first.";
     }
     const double smallest = extremes.GetSmallestSize();
     const double finest =
@@ -574,19 +587,27 @@ int vtkSteerableNoiseFilter::RequestData(
   internals.Self = this;
   std::vector<Block> blocks;
   bool failed = false;
-  const auto addBlock = [&](vtkDataSet* dataset, bool required)
+  // `original`: what `dataset` was magnified from, or null.
+  const auto addBlock = [&](vtkDataSet* dataset, vtkDataSet* original, bool required)
   {
     Block block;
     block.DataSet = dataset;
     std::string why;
     if (internals.FindArray(block, why))
     {
+      Block coarse;
+      coarse.DataSet = original;
+      if (original && internals.FindArray(coarse, why) && coarse.Cells == block.Cells)
+      {
+        block.Original = original;
+        block.OriginalArray = coarse.Array;
+      }
       blocks.push_back(block);
     }
     else if (dataset->GetNumberOfPoints() > 0)
     {
+      internals.Why = failed ? internals.Why : why;
       failed = failed || required;
-      internals.Why = why;
       ++internals.BlocksWithout;
     }
   };
@@ -594,22 +615,54 @@ int vtkSteerableNoiseFilter::RequestData(
   // The output: shallow copies of the input's datasets, so that arrays can be added.
   vtkCompositeDataSet* composite = vtkCompositeDataSet::SafeDownCast(output);
   int wholeExtent[6];
-  bool hasWhole = false;
+  const int* whole = nullptr;
   if (composite)
   {
     auto* inputs = vtkCompositeDataSet::SafeDownCast(input);
     composite->CopyStructure(inputs);
     composite->GetFieldData()->PassData(inputs->GetFieldData());
     auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(inputs->NewIterator());
+    // The levels of an AMR say how fine its images are.
+    const bool isAMR = composite->IsA("vtkUniformGridAMR");
+    const bool magnify = this->Magnification > 1 && !isAMR;
+    try
+    {
+      std::vector<vtkImageData*> images;
+      for (iterator->InitTraversal(); magnify && !iterator->IsDoneWithTraversal();
+           iterator->GoToNextItem())
+      {
+        if (auto* image = vtkImageData::SafeDownCast(iterator->GetCurrentDataObject()))
+        {
+          images.push_back(image);
+        }
+      }
+      noise::CheckMemory(images, this->Magnification);
+    }
+    catch (const std::exception& error)
+    {
+      // Not before the others know: they wait for this rank.
+      internals.Why = error.what();
+      failed = true;
+    }
     for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
     {
       vtkDataObject* leaf = iterator->GetCurrentDataObject();
       auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
-      copy->ShallowCopy(leaf);
+      auto* image = vtkImageData::SafeDownCast(leaf);
+      const bool finer = image && magnify && !failed;
+      if (finer)
+      {
+        noise::Magnify(image, vtkImageData::SafeDownCast(copy), nullptr, this->Magnification);
+      }
+      else
+      {
+        copy->ShallowCopy(leaf);
+      }
+      internals.ImagesAsTheyAre += image && isAMR && this->Magnification > 1;
       composite->SetDataSet(iterator, copy);
       if (auto* dataset = vtkDataSet::SafeDownCast(copy))
       {
-        addBlock(dataset, false);
+        addBlock(dataset, finer ? image : nullptr, false);
       }
       else if (copy->IsA("vtkHyperTreeGrid"))
       {
@@ -617,18 +670,21 @@ int vtkSteerableNoiseFilter::RequestData(
         internals.Why = HyperTreeGridMessage;
       }
     }
-    failed = blocks.empty() && internals.BlocksWithout > 0 && !this->Controller;
+    failed = failed || (blocks.empty() && internals.BlocksWithout > 0 && !this->Controller);
   }
   else
   {
     auto* dataset = vtkDataSet::SafeDownCast(output);
     auto* image = vtkImageData::SafeDownCast(input);
-    hasWhole = image && outInfo->Has(SDDP::WHOLE_EXTENT());
-    if (image && this->Magnification > 1)
+    const bool magnify = image && this->Magnification > 1;
+    if (magnify)
     {
       try
       {
-        noise::Magnify(image, vtkImageData::SafeDownCast(output), outInfo, this->Magnification);
+        int extent[6];
+        outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
+        noise::CheckMemory({ image }, this->Magnification);
+        noise::Magnify(image, vtkImageData::SafeDownCast(output), extent, this->Magnification);
       }
       catch (const std::exception& error)
       {
@@ -641,22 +697,34 @@ int vtkSteerableNoiseFilter::RequestData(
     {
       dataset->ShallowCopy(input);
     }
-    if (hasWhole)
+    if (outInfo->Has(SDDP::WHOLE_EXTENT()))
     {
       outInfo->Get(SDDP::WHOLE_EXTENT(), wholeExtent);
+      whole = wholeExtent;
     }
-    addBlock(dataset, true);
+    addBlock(dataset, magnify ? image : nullptr, true);
   }
 
   // Everything that ranks do together comes before anything that may fail on one of them.
   steerable::NoiseParameters parameters = internals.GetParameters(time);
-  const bool needsMagnitude = this->StrengthMode == MAGNITUDE && this->ReferenceMagnitude <= 0.0;
+  noise::CommonShape shape;
+  for (const Block& block : blocks)
+  {
+    shape.Add(block.DataSet, block.Cells, whole);
+  }
+  shape.Reduce(this->Controller);
+  for (Block& block : blocks)
+  {
+    block.Shape = shape.Get(block.DataSet, block.Cells, whole);
+  }
   Extremes extremes;
   for (const Block& block : blocks)
   {
-    extremes.Add(block, needsMagnitude, this->FeatureSize <= 0.0);
+    extremes.Add(block, this->FeatureSize <= 0.0);
   }
   extremes.Reduce(this->Controller);
+  const bool needsMagnitude = this->StrengthMode == MAGNITUDE && this->ReferenceMagnitude <= 0.0;
+  const Lengths lengths(blocks, needsMagnitude, this->MaskUpperThreshold, this->Controller);
   if (failed)
   {
     vtkErrorMacro(<< internals.Why);
@@ -664,7 +732,7 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   if (blocks.empty())
   {
-    internals.Report(extremes, parameters, composite != nullptr);
+    internals.Report(extremes, lengths, parameters, composite != nullptr);
     return 1;
   }
   if (this->FeatureSize <= 0.0)
@@ -674,7 +742,7 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   if (needsMagnitude)
   {
-    parameters.ReferenceMagnitude = extremes.LongestVector > 0.0 ? extremes.LongestVector : 1.0;
+    parameters.ReferenceMagnitude = lengths.Longest > 0.0 ? lengths.Longest : 1.0;
   }
   this->ResolvedFeatureSize = parameters.FeatureSize;
 
@@ -682,8 +750,8 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
     {
-      internals.Process(blocks[i], parameters, extremes.GetPlane(), hasWhole ? wholeExtent : nullptr,
-        hasWhole ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
+      internals.Process(blocks[i], parameters, extremes.Bounds.GetPlane(), lengths.Limit,
+        blocks[i].Original ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
         1.0 / blocks.size());
     }
   }
@@ -702,7 +770,8 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   this->NumberOfDegenerateSamples = static_cast<vtkIdType>(internals.Counts.Degenerate);
   this->NumberOfStagnantSamples = static_cast<vtkIdType>(internals.Counts.Stagnant);
-  internals.Report(extremes, parameters, composite != nullptr);
+  this->NumberOfOverlongSamples = internals.TooLong;
+  internals.Report(extremes, lengths, parameters, composite != nullptr);
   return 1;
 }
 
@@ -740,6 +809,7 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
      << "\n";
   os << indent << "Magnification: " << this->Magnification << "\n";
   os << indent << "MaskThreshold: " << this->MaskThreshold << "\n";
+  os << indent << "MaskUpperThreshold: " << this->MaskUpperThreshold << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "ResultArrayName: " << (this->ResultArrayName ? this->ResultArrayName : "(none)")
      << "\n";

@@ -12,7 +12,8 @@
  * its neighbours' vectors too), so it does not depend on the camera, on threads, on pieces or on ranks.
  *
  * Flat images get 2D noise in their plane; volumes get 3D noise; cells of dimension 2 in other datasets
- * get 3D noise whose metric lies in the surface. Turned images use lattices along their own axes.
+ * get 3D noise whose metric lies in the surface. The blocks of a composite agree on it over all ranks: flat images
+ * next to other data are surfaces, and structured grids one cell thick are surfaces only where no volume is. Turned images use lattices along their own axes.
  *
  * Vectors without a direction (zero, NaN, infinite) get isotropic noise and are counted in one warning.
  * A missing array is an error in a plain dataset; a block of a composite without it is passed on and
@@ -99,6 +100,9 @@ public:
 
   /// Samples of the last execution at or below MaskThreshold.
   vtkGetMacro(NumberOfStagnantSamples, vtkIdType);
+
+  /// Samples of the last execution above MaskUpperThreshold, or taken for fill values.
+  vtkGetMacro(NumberOfOverlongSamples, vtkIdType);
 
   ///@{
   /// Half-length of a streak in cells, 1 to 20, default 6. With LatticeWindow it does not count.
@@ -285,8 +289,9 @@ public:
 
   ///@{
   /**
-   * Images only: samples per sample of the input along each axis, 1 to 16, default 1. Point arrays are
-   * interpolated linearly, cell arrays are repeated, vectors on cells interpolated for the noise.
+   * Images only, also in composites but those of an AMR, whose levels say how fine they are: samples per sample of
+   * the input along each axis, 1 to 16, default 1. Point arrays are interpolated linearly, cell arrays are
+   * repeated, vectors on cells interpolated for the noise.
    */
   vtkSetClampMacro(Magnification, int, 1, 16);
   vtkGetMacro(Magnification, int);
@@ -296,6 +301,17 @@ public:
   /// Vectors at or below this length are stagnant: output 0 there, counted. 0, the default: none.
   vtkSetClampMacro(MaskThreshold, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(MaskThreshold, double);
+  ///@}
+
+  ///@{
+  /**
+   * Vectors above this length are left out: output 0, counted, and they do not count as neighbours or for the
+   * longest vector. 0, the default: values that stand for missing ones are left out. These are at least 99,
+   * 16 times as long as any other vector, and as alike as one number in 1 to 3 components (a factor of 1.75); a
+   * warning names them, and what is as long but not alike.
+   */
+  vtkSetClampMacro(MaskUpperThreshold, double, 0.0, VTK_DOUBLE_MAX);
+  vtkGetMacro(MaskUpperThreshold, double);
   ///@}
 
   ///@{
@@ -342,6 +358,7 @@ protected:
   double ResolvedFeatureSize = 0.0;
   vtkIdType NumberOfDegenerateSamples = 0;
   vtkIdType NumberOfStagnantSamples = 0;
+  vtkIdType NumberOfOverlongSamples = 0;
   double StreakLength = 6.0;
   int Quality = 4;
   double MinimumEigenvalue = 0.5;
@@ -369,6 +386,7 @@ protected:
   int Period[3] = { 0, 0, 0 };
   int Magnification = 1;
   double MaskThreshold = 0.0;
+  double MaskUpperThreshold = 0.0;
   int Seed = 0;
   char* ResultArrayName = nullptr;
   bool OutputMetric = false;

@@ -45,7 +45,7 @@ std::string GetDefines(const ShaderOptions& options, const ShaderVariant& varian
   os << "#define HASH_SEED " << HashSeed << "u\n#define HASH_JOIN " << HashJoin
      << "u\n#define HASH_AXIS_SHIFT " << HashAxisShift << "\n#define HASH_JOIN_SHIFT "
      << HashJoinShift << "\n#define LEVEL_SEED " << LevelSeed << "u\n#define NOISE_OCTAVES "
-     << model.Octaves << "\n"
+     << model.Octaves << "\n#define NOISE_COLOR_MODE " << options.ColorMode << "\n"
      << std::scientific << "#define VARIANCE_FLOOR " << VarianceFloor
      << "\n#define SURFACE_NORMAL_EIGENVALUE " << SurfaceNormalEigenvalue << "\n";
   os << (variant.Tensors ? "#define NOISE_TENSORS\n" : "")
@@ -63,50 +63,80 @@ void AddAfter(vtkShader* shader, const std::string& tag, const std::string& text
   shader->SetSource(source);
 }
 
+/// What the vertices say but places.
+std::vector<std::string> GetVaryings(const ShaderVariant& variant)
+{
+  return variant.PerCell ? std::vector<std::string>{}
+    : variant.Tensors    ? std::vector<std::string>{ "noiseSteering", "noiseSteering2" }
+                         : std::vector<std::string>{ "noiseSteering", "noiseNormal", "noiseBend" };
+}
+
 /// Places and what steers them, from the vertices or from a buffer with a line for each primitive.
 const char* const VertexDeclarations = R"(
 uniform vec3 noiseVertexScale;
-out vec3 noisePlaceVS;
+out vec3 noisePlaceVSOutput;
 #ifndef NOISE_CELLS
 in vec3 noiseSteering;
-out vec3 noiseSteeringVS;
+out vec3 noiseSteeringVSOutput;
 #ifdef NOISE_TENSORS
 in vec3 noiseSteering2;
-out vec3 noiseSteering2VS;
+out vec3 noiseSteering2VSOutput;
 #else
 in vec3 noiseNormal;
 in vec3 noiseBend;
-out vec3 noiseNormalVS;
-out vec3 noiseBendVS;
+out vec3 noiseNormalVSOutput;
+out vec3 noiseBendVSOutput;
 #endif
 #endif
 )";
 
 const char* const VertexImplementation = R"(
-  noisePlaceVS = vertexMC.xyz * noiseVertexScale;
+  noisePlaceVSOutput = vertexMC.xyz * noiseVertexScale;
 #ifndef NOISE_CELLS
-  noiseSteeringVS = noiseSteering;
+  noiseSteeringVSOutput = noiseSteering;
 #ifdef NOISE_TENSORS
-  noiseSteering2VS = noiseSteering2;
+  noiseSteering2VSOutput = noiseSteering2;
 #else
-  noiseNormalVS = noiseNormal;
-  noiseBendVS = noiseBend;
+  noiseNormalVSOutput = noiseNormal;
+  noiseBendVSOutput = noiseBend;
 #endif
 #endif
 )";
 
+/// Edges and wide lines have a geometry shader, which has to pass on what the vertices say. VTK renames what the
+/// fragments read from VSOutput to GSOutput where there is one.
+std::string GetGeometryDeclarations(const ShaderVariant& variant)
+{
+  std::string text = "in vec3 noisePlaceVSOutput[];\nout vec3 noisePlaceGSOutput;\n";
+  for (const std::string& name : GetVaryings(variant))
+  {
+    text += "in vec3 " + name + "VSOutput[];\nout vec3 " + name + "GSOutput;\n";
+  }
+  return text;
+}
+
+std::string GetGeometryImplementation(const ShaderVariant& variant)
+{
+  std::string text = "  noisePlaceGSOutput = noisePlaceVSOutput[i];\n";
+  for (const std::string& name : GetVaryings(variant))
+  {
+    text += "  " + name + "GSOutput = " + name + "VSOutput[i];\n";
+  }
+  return text + (variant.PerCell ? "  gl_PrimitiveID = gl_PrimitiveIDIn;\n" : "");
+}
+
 const char* const FragmentDeclarations = R"(
-in vec3 noisePlaceVS;
+in vec3 noisePlaceVSOutput;
 #ifdef NOISE_CELLS
 uniform samplerBuffer noiseCells;
 uniform int noiseFirstPrimitive;
 #else
-in vec3 noiseSteeringVS;
+in vec3 noiseSteeringVSOutput;
 #ifdef NOISE_TENSORS
-in vec3 noiseSteering2VS;
+in vec3 noiseSteering2VSOutput;
 #else
-in vec3 noiseNormalVS;
-in vec3 noiseBendVS;
+in vec3 noiseNormalVSOutput;
+in vec3 noiseBendVSOutput;
 #endif
 #endif
 )";
@@ -115,22 +145,24 @@ const char* const FragmentNoise = R"(
   bool noiseSteered = false;
 #ifdef NOISE_CELLS
   int noiseLine = 3 * (gl_PrimitiveID + noiseFirstPrimitive);
-  vec3 noiseSteeringVS = texelFetch(noiseCells, noiseLine).xyz;
-  vec3 noiseSecondVS = texelFetch(noiseCells, noiseLine + 1).xyz;
-  vec3 noiseThirdVS = texelFetch(noiseCells, noiseLine + 2).xyz;
+  vec3 noiseFirst = texelFetch(noiseCells, noiseLine).xyz;
+  vec3 noiseSecond = texelFetch(noiseCells, noiseLine + 1).xyz;
+  vec3 noiseThird = texelFetch(noiseCells, noiseLine + 2).xyz;
 #elif defined(NOISE_TENSORS)
-  vec3 noiseSecondVS = noiseSteering2VS;
-  vec3 noiseThirdVS = vec3(0.0);
+  vec3 noiseFirst = noiseSteeringVSOutput;
+  vec3 noiseSecond = noiseSteering2VSOutput;
+  vec3 noiseThird = vec3(0.0);
 #else
-  vec3 noiseSecondVS = noiseNormalVS;
-  vec3 noiseThirdVS = noiseBendVS;
+  vec3 noiseFirst = noiseSteeringVSOutput;
+  vec3 noiseSecond = noiseNormalVSOutput;
+  vec3 noiseThird = noiseBendVSOutput;
 #endif
 #ifdef NOISE_TENSORS
-  float noiseValue = NoiseOfFragment(noisePlaceVS, noiseSteeringVS, noiseSecondVS, vec3(0.0),
+  float noiseValue = NoiseOfFragment(noisePlaceVSOutput, noiseFirst, noiseSecond, vec3(0.0),
     vec3(0.0), 1.0 / gl_FragCoord.w, noiseSteered);
 #else
-  float noiseValue = NoiseOfFragment(noisePlaceVS, noiseSteeringVS, vec3(0.0), noiseThirdVS,
-    noiseSecondVS, 1.0 / gl_FragCoord.w, noiseSteered);
+  float noiseValue = NoiseOfFragment(noisePlaceVSOutput, noiseFirst, vec3(0.0), noiseThird,
+    noiseSecond, 1.0 / gl_FragCoord.w, noiseSteered);
 #endif
 )";
 
@@ -178,6 +210,12 @@ void AddNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const ShaderOption
   vtkShader* vertex = shaders[vtkShader::Vertex];
   AddAfter(vertex, "//VTK::PositionVC::Dec", defines + VertexDeclarations);
   AddAfter(vertex, "//VTK::PositionVC::Impl", VertexImplementation);
+  vtkShader* geometry = shaders[vtkShader::Geometry];
+  if (!geometry->GetSource().empty())
+  {
+    AddAfter(geometry, "//VTK::PositionVC::Dec", GetGeometryDeclarations(variant));
+    AddAfter(geometry, "//VTK::PositionVC::Impl", GetGeometryImplementation(variant));
+  }
   vtkShader* fragment = shaders[vtkShader::Fragment];
   AddAfter(fragment, "//VTK::PositionVC::Dec",
     defines + FragmentDeclarations + SteerableNoiseGlsl + SteerableNoiseColorGlsl);
@@ -289,7 +327,6 @@ void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRen
   setFloat("noiseCurvature", model.FollowCurvature ? 1.0 : 0.0);
   setInt("noiseSeed", static_cast<int>(model.Seed));
 
-  setInt("noiseColorMode", options.ColorMode);
   setFloat("noiseIntensity", options.Intensity);
   setFloat("noiseContrast", options.Contrast);
   if (program->IsUniformUsed("noiseMaskColor"))

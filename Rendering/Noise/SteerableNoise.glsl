@@ -223,14 +223,17 @@ void ApplyCurvature(inout AxialMetric metric, vec3 curvature)
   metric.Second = Blend(metric.Second, keeps);
 }
 
-vec3 Cycle(vec3 v, int steps)
+/// The axes of the lattice in another order: first the one after `cycle` steps, the others swapped or not.
+vec3 Reorder(vec3 v, int cycle, bool swapped)
 {
-  return steps == 0 ? v : steps == 1 ? v.yzx : v.zxy;
+  v = cycle == 0 ? v : cycle == 1 ? v.yzx : v.zxy;
+  return swapped ? v.xzy : v;
 }
 
-uvec3 Cycle(uvec3 v, int steps)
+uvec3 Reorder(uvec3 v, int cycle, bool swapped)
 {
-  return steps == 0 ? v : steps == 1 ? v.yzx : v.zxy;
+  v = cycle == 0 ? v : cycle == 1 ? v.yzx : v.zxy;
+  return swapped ? v.xzy : v;
 }
 
 /// Noise of unit variance at `place`, in cells from the corner `origin`.
@@ -239,25 +242,10 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
   vec3 cell = floor(place);
   vec3 f = place - cell;
   uvec3 corner = uvec3(ivec3(cell)) + origin;
-
-  // From here on x is the axis that the flow follows most. Gradients stay in the axes of the lattice.
-  vec3 size = abs(metric.Direction);
-  int cycle = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
   vec3 thirdAxis = cross(metric.SecondAxis, metric.Direction);
-  vec3 u = Cycle(metric.Direction, cycle);
-  vec3 m = Cycle(metric.SecondAxis, cycle);
-  vec3 c = Cycle(thirdAxis, cycle);
-  vec3 d = Cycle(metric.Bend, cycle);
-  f = Cycle(f, cycle);
-  corner = Cycle(corner, cycle);
-  uvec3 first = Cycle(HASH_AXIS, cycle);
-  uvec3 last = Cycle(HASH_AXIS_FINAL, cycle);
-
   float k = metric.Along;
   float b = metric.Across;
   float e = metric.Second;
-  float bendC = dot(d, c);
-  float bendM = dot(d, m);
 
   // The ellipsoid that holds all that a corner can add to, where motion and jitter move it.
   float reachAlong = 1.0;
@@ -277,92 +265,101 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
   float br = b * reachAcross;
   float er = e * reachAcross;
 
+  // From here on x is the axis that the flow follows most, and y of the others the one in which its section
+  // is narrower, so that there are few rows. Gradients stay in the axes of the lattice.
+  vec3 size = abs(metric.Direction);
+  int cycle = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
+  vec3 width = Reorder(thirdAxis * thirdAxis / br + metric.SecondAxis * metric.SecondAxis / er, cycle, false);
+  bool swapped = width.z < width.y;
+  vec3 u = Reorder(metric.Direction, cycle, swapped);
+  vec3 m = Reorder(metric.SecondAxis, cycle, swapped);
+  vec3 c = Reorder(thirdAxis, cycle, swapped);
+  vec3 d = Reorder(metric.Bend, cycle, swapped);
+  f = Reorder(f, cycle, swapped);
+  corner = Reorder(corner, cycle, swapped);
+  uvec3 first = Reorder(HASH_AXIS, cycle, swapped);
+  uvec3 last = Reorder(HASH_AXIS_FINAL, cycle, swapped);
+  float halfBendC = 0.5 * dot(d, c);
+  float halfBendM = 0.5 * dot(d, m);
+  mat3 axes = transpose(mat3(u, c, m)); // times v: its components along u, c and m
+
+  // With C and M the ellipsoid is kr s^2 + t^2 + h^2 < 1 at s u + t C + h M + s^2 d / 2. It is the same for -s
+  // and -u: here streamlines go up in x.
+  vec3 C = c * inversesqrt(br);
+  vec3 M = m * inversesqrt(er);
+  vec3 up = u.x < 0.0 ? -u : u;
+  float thickness = C.x * C.x + M.x * M.x;
+  // All of it lies in this box.
+  vec3 extent = sqrt(up * up / kr + C * C + M * M) + jitter;
+  vec3 sag = d * (0.5 / kr);
+  ivec3 begin = ivec3(ceil(f - extent + min(sag, 0.0)));
+  ivec3 end = ivec3(floor(f + extent + max(sag, 0.0)));
+  // Where a streak turns within a few cells, the box is small and all of it is visited.
+  float strong = dot(d, d) > 0.3 ? 100.0 : 0.0;
   float farthest = inversesqrt(kr);
-  float extent = sqrt(u.x * u.x / kr + c.x * c.x / br + m.x * m.x / er) + jitter;
-  float sag = 0.5 * d.x / kr;
-  int begin = int(ceil(f.x - extent + min(sag, 0.0)));
-  int end = int(floor(f.x + extent + max(sag, 0.0)));
-  float thickness = c.x * c.x / br + m.x * m.x / er; // of a straight streak along x, squared
-  float bendLength = length(d);
+  float perTurn = 0.5 * inversesqrt(max(thickness * d.x * d.x, 1e-12));
 
   float noise = 0.0;
   float variance = 0.0;
-  for (int i = begin; i <= end; ++i)
+  for (int i = begin.x; i <= end.x; ++i)
   {
     float x = float(i) - f.x;
-    // The middle of the section: where the streamline's parabola s u + s^2 d / 2 has this x.
-    float slope = sqrt(max(u.x * u.x + 2.0 * x * d.x, 0.0));
-    float s0 = clamp(2.0 * x / (u.x + (u.x < 0.0 ? -slope : slope)), -farthest, farthest);
-    // What the second order leaves out, with jitter: much only where the parabola turns across x.
-    slope = max(abs(u.x + s0 * d.x), 0.1);
-    float slack = min(0.5 * bendLength * thickness / (slope * slope * slope), 4.0) +
-      jitter * (1.0 + 1.0 / slope);
-    vec3 middle = s0 * u + 0.5 * s0 * s0 * d;
-    float dx = x - middle.x;
-    // q there to second order: k (s0 + u.v)^2 + b (C.v)^2 + e (M.v)^2 with axes that turn with the parabola.
-    vec3 C = c - s0 * bendC * u;
-    vec3 M = m - s0 * bendM * u;
-    float alongX = kr * (s0 + u.x * dx);
-    float cx = br * C.x * dx;
-    float mx = er * M.x * dx;
-    float yy = kr * u.y * u.y + br * C.y * C.y + er * M.y * M.y;
-    float yz = kr * u.y * u.z + br * C.y * C.z + er * M.y * M.z;
-    float zz = kr * u.z * u.z + br * C.z * C.z + er * M.z * M.z;
-    float y1 = alongX * u.y + cx * C.y + mx * M.y;
-    float z1 = alongX * u.z + cx * C.z + mx * M.z;
-    float q0 = alongX * (s0 + u.x * dx) + cx * C.x * dx + mx * M.x * dx;
-    float inverseZ = 1.0 / zz;
-    float sy = 1.0 / (yy - yz * yz * inverseZ);
-    float ym = -(y1 - z1 * yz * inverseZ) * sy;
-    // What is left of q for the rows, and as much more as the slack may turn out to be.
-    float left = 1.0 + min(4.0 * slack, 2.0) - (q0 - z1 * z1 * inverseZ - ym * ym / sy);
-    if (left <= 0.0)
-    {
-      continue;
-    }
-    float halfY = sqrt(min(left, 1.0) * sy) + slack;
-    float slackZ =
-      slack + jitter * (abs(yz) + abs(kr * u.x * u.z + br * C.x * C.z + er * M.x * M.z)) * inverseZ;
-    float toY = f.y + middle.y;
-    float toZ = f.z + middle.z;
-    int beginY = int(ceil(toY + ym - halfY));
-    int endY = int(floor(toY + ym + halfY));
+    // Where the streamline's parabola has this x, and its direction (1, turn) there. `turns` is 0 where it
+    // turns back; beyond, only its thickness reaches x.
+    float turns = up.x * up.x + 2.0 * x * d.x;
+    float inverse = inversesqrt(max(turns, 0.06));
+    float s0 = 2.0 * x / (up.x + max(turns, 0.06) * inverse);
+    s0 = turns < 0.06 ? clamp(s0, -farthest, farthest) : s0;
+    vec2 turn = (up.yz + s0 * d.yz) * inverse;
+    // To first order the section is the ellipse t^2 + h^2 < left with the sides A and B.
+    vec2 A = C.yz - C.x * turn;
+    vec2 B = M.yz - M.x * turn;
+    float flat2 = thickness * inverse * inverse;
+    float yy = A.x * A.x + B.x * B.x;
+    float inverseY = 1.0 / yy;
+    float skew = (A.x * A.y + B.x * B.y) * inverseY;
+    float zz = inverse * inverse * inverseY / (br * er); // of z where y is given
+    // To second order it moves on by up to twice this; jitter moves it anywhere.
+    vec2 onward = 0.25 * min(flat2, 4.0 / kr) * (d.yz - turn * d.x);
+    vec2 slack = abs(vec2(onward.x, onward.y - skew * onward.x)) + strong +
+      jitter * vec2(1.0 + abs(turn.x), 1.0 + abs(skew) + abs(turn.y - skew * turn.x));
+    float ks0 = kr * s0;
+    float beyond = max(-turns, 0.0) * perTurn;
+    float left = 1.0 + strong + min(4.0 * max(slack.x, slack.y), 2.0) -
+      ks0 * s0 * (1.0 - kr * flat2) - beyond * beyond;
+    vec2 middle = f.yz + s0 * up.yz + 0.5 * s0 * s0 * d.yz + onward +
+      ks0 * inverse * (C.x * A + M.x * B);
+    float halfY = sqrt(clamp(left, 0.0, 1.0) * yy) + slack.x;
+    int beginY = max(begin.y, int(ceil(middle.x - halfY)));
+    int endY = left > 0.0 ? min(end.y, int(floor(middle.x + halfY))) : beginY - 1;
+    vec3 ofSection = x * axes[0];
     uint hashX = HashOneAxis(corner.x + uint(i), first.x, last.x) ^ seed;
     for (int j = beginY; j <= endY; ++j)
     {
       float y = float(j) - f.y;
-      float dy = y - middle.y;
-      float zm = -(z1 + yz * dy) * inverseZ;
-      float leftZ =
-        1.0 + min(4.0 * slack, 2.0) - (q0 + (2.0 * y1 + yy * dy) * dy - zm * zm * zz);
-      if (leftZ <= 0.0)
-      {
-        continue;
-      }
-      float halfZ = sqrt(min(leftZ, 1.0) * inverseZ) + slackZ;
-      int beginZ = int(ceil(toZ + zm - halfZ));
-      int endZ = int(floor(toZ + zm + halfZ));
+      float dy = float(j) - middle.x;
+      float leftZ = left - dy * dy * inverseY;
+      float halfZ = sqrt(clamp(leftZ, 0.0, 1.0) * zz) + slack.y;
+      float middleZ = middle.y + dy * skew;
+      int beginZ = max(begin.z, int(ceil(middleZ - halfZ)));
+      int endZ = leftZ > 0.0 ? min(end.z, int(floor(middleZ + halfZ))) : beginZ - 1;
+      vec3 ofRow = ofSection + y * axes[1];
       uint hashXY = hashX ^ HashOneAxis(corner.y + uint(j), first.y, last.y);
       for (int l = beginZ; l <= endZ; ++l)
       {
-        vec3 v = vec3(x, y, float(l) - f.z);
+        uint hash = HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
+        vec3 sth = ofRow + (float(l) - f.z) * axes[2];
 #ifdef NOISE_STREAKS
-        uint hash =
-          HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
         vec3 shift = vec3(HashToUnit(HashStream(hash, 3u)), HashToUnit(HashStream(hash, 4u)),
                        HashToUnit(HashStream(hash, 5u))) - 0.5;
-        v += Cycle(shift, cycle);
+        sth += axes * Reorder(shift, cycle, swapped);
 #endif
-        float s = dot(v, u);
-        float bend = 0.5 * s * s;
-        float t = dot(v, c) - bend * bendC;
-        float h = dot(v, m) - bend * bendM;
+        float s = sth.x;
+        float bend = s * s;
+        float t = sth.y - bend * halfBendC;
+        float h = sth.z - bend * halfBendM;
         float amplitude = 1.0;
 #ifdef NOISE_MOTION
-#ifndef NOISE_STREAKS
-        uint hash =
-          HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
-#endif
         float clock = fract(noisePhase + HashToUnit(HashStream(hash, 1u)));
         s += (clock - 0.5) * noiseSpeed * inversesqrt(k);
         amplitude = sin(3.14159265 * clock);
@@ -379,20 +376,12 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
           variance += noiseDensity * profile * profile;
         }
 #else
-        if (q < 1.0)
-        {
-#ifndef NOISE_MOTION
-          uint hash =
-            HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
-#endif
-          float weight = FadeOf(q);
-          float ks = k * s;
-          float bt = b * t;
-          float eh = e * h;
-          vec3 Gv = ks * metric.Direction + bt * thirdAxis + eh * metric.SecondAxis;
-          noise += amplitude * weight * dot(UniformGradient(hash), Gv);
-          variance += weight * weight * (ks * ks + bt * bt + eh * eh) * (1.0 / 3.0);
-        }
+        // 0 where q is 1 and beyond: a branch costs more than it saves.
+        float weight = FadeOf(min(q, 1.0));
+        vec3 Gv =
+          k * s * metric.Direction + b * t * thirdAxis + e * h * metric.SecondAxis;
+        noise += amplitude * weight * dot(UniformGradient(hash), Gv);
+        variance += weight * weight * dot(Gv, Gv) * (1.0 / 3.0);
 #endif
       }
     }
@@ -400,18 +389,21 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
   return noise * inversesqrt(variance + VARIANCE_FLOOR);
 }
 
-/// Pixels that a streak of one cell of `size` is wide on the screen; what is narrower than 2 fades to the mean.
-float AntiAliased(float size, float pixel, vec3 place, vec3 direction, vec3 normal)
+/// Streaks in cells of `size` fade to the mean where on the screen they are narrower than 2 pixels, or their
+/// half-length is shorter than 6.
+float AntiAliased(float size, float pixel, vec3 place, AxialMetric metric, vec3 normal)
 {
   float width = size / pixel;
+  float halfLength = width * inversesqrt(metric.Along);
   if (normal != vec3(0.0))
   {
     vec3 view = noiseView == vec3(0.0) ? normalize(noiseEye - place) : noiseView;
-    float alongView = dot(direction, view);
-    width *=
-      min(1.0, abs(dot(normal, view)) * inversesqrt(max(1.0 - alongView * alongView, 1e-6)));
+    float alongView = dot(metric.Direction, view);
+    float foreshortened = sqrt(max(1.0 - alongView * alongView, 1e-6));
+    halfLength *= foreshortened;
+    width *= min(1.0, abs(dot(normal, view)) / foreshortened);
   }
-  return smoothstep(1.0, 2.0, width);
+  return smoothstep(1.0, 2.0, width) * smoothstep(0.5, 6.0, halfLength);
 }
 
 /// A corner of cells of 2^-shift as one of cells of 1, and what is left over in those.
@@ -439,7 +431,7 @@ float SteerableNoise(vec3 place, float size, int level, float pixel, AxialMetric
   for (int i = 0; i < NOISE_OCTAVES; ++i)
   {
     float octaveSize = size / fineness;
-    float share = AntiAliased(octaveSize, pixel, place, metric.Direction, normal);
+    float share = AntiAliased(octaveSize, pixel, place, metric, normal);
     if (share > 0.0)
     {
       AxialMetric bent = metric;

@@ -4,7 +4,6 @@
 // From the noise of a fragment to its colour. Colours are those of the surface before lighting, so that light,
 // specular highlights and edges stay what they are; the colour map stays readable under Lightness.
 
-uniform int noiseColorMode;        // vtkSteerableNoiseMapper::NoiseColorModeType
 uniform float noiseIntensity;
 uniform float noiseContrast;
 uniform vec4 noiseMaskColor;       // of what shows no noise; alpha 0: the surface's own
@@ -48,15 +47,15 @@ vec3 WithLightness(vec3 color, float change)
 /// `white`: what a white surface has in place of `color`, its share of ambient or diffuse light.
 vec3 ColorOf(vec3 color, float noise, float white)
 {
-  if (noiseColorMode == 0) // Multiply
+  if (NOISE_COLOR_MODE == 0) // Multiply
   {
     return color * (1.0 - noiseIntensity * (1.0 - GreyOf(noise, 0.75)));
   }
-  if (noiseColorMode == 1) // Blend
+  if (NOISE_COLOR_MODE == 1) // Blend
   {
     return mix(color, vec3(white * GreyOf(noise, 0.5)), noiseIntensity);
   }
-  if (noiseColorMode == 2 && white > 0.0) // Lightness
+  if (NOISE_COLOR_MODE == 2 && white > 0.0) // Lightness
   {
     return white *
       WithLightness(color / white, 0.5 * noiseIntensity * (GreyOf(noise, 0.5) - 0.5));
@@ -66,7 +65,7 @@ vec3 ColorOf(vec3 color, float noise, float white)
 
 float OpacityOf(float opacity, float noise)
 {
-  return noiseColorMode == 3 ? opacity * (1.0 - noiseIntensity * (1.0 - GreyOf(noise, 0.5)))
+  return NOISE_COLOR_MODE == 3 ? opacity * (1.0 - noiseIntensity * (1.0 - GreyOf(noise, 0.5)))
                              : opacity;
 }
 

@@ -66,6 +66,7 @@ struct vtkSteerableNoiseMapper::Internals
   vtkTimeStamp PerCellTime;
   /// When something that is uploaded changed.
   vtkTimeStamp FieldsTime;
+  vtkTimeStamp UploadTime;
   std::map<vtkPolyData*, Block> Blocks;
   bool AnyNoise = false;
   double OwnDiagonal = 0.0;
@@ -186,9 +187,7 @@ protected:
   void ReplaceShaderValues(
     std::map<vtkShader::Type, vtkShader*> shaders, vtkRenderer* renderer, vtkActor* actor) override
   {
-    // A geometry shader (wide lines, tubes) would have to pass on what the vertices say.
-    if (this->ShowsNoise(renderer) && shaders[vtkShader::Geometry]->GetSource().empty() &&
-      !this->DrawingVertices)
+    if (this->ShowsNoise(renderer) && !this->DrawingVertices)
     {
       noise::AddNoise(shaders, this->GetInternals().Options, this->GetInternals().Variant);
     }
@@ -267,6 +266,7 @@ protected:
     this->OwnVertices.clear();
     this->Superclass::BuildBufferObjects(renderer, actor);
     this->OwnVertices.clear();
+    this->GetInternals().UploadTime.Modified();
     if (!this->CellLines.empty())
     {
       if (!this->CellTexture)
@@ -601,8 +601,9 @@ STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthBy,
   StrengthMode == MAGNITUDE ? steerable::StrengthMode::Magnitude : steerable::StrengthMode::Constant, )
 STEERABLENOISE_OPTION(Basis, int, Model.Surflet,
   Basis == STREAKS ? steerable::Basis::Streaks : steerable::Basis::Gradient, VARIANT)
-// Decides on which pass the geometry is drawn.
+// Decides on which pass the geometry is drawn, too.
 STEERABLENOISE_OPTION(NoiseColorMode, int, ColorMode, Clamp<int>(NoiseColorMode, MULTIPLY, OPACITY),
+  VARIANT;
   this->Modified())
 STEERABLENOISE_OPTION(VectorsPerCell, bool, VectorsPerCell, VectorsPerCell,
   this->Internal->PerCellTime.Modified())
@@ -660,6 +661,11 @@ void vtkSteerableNoiseMapper::SetSharedExtremes(double diagonal, double longest)
 {
   this->Internal->SharedDiagonal = Clamp(diagonal, 0.0, VTK_DOUBLE_MAX);
   this->Internal->SharedLongest = Clamp(longest, 0.0, VTK_DOUBLE_MAX);
+}
+
+vtkMTimeType vtkSteerableNoiseMapper::GetUploadTime()
+{
+  return this->Internal->UploadTime;
 }
 
 bool vtkSteerableNoiseMapper::SetOptionsFrom(vtkSteerableNoiseFilter* filter)

@@ -272,6 +272,11 @@ public:
    */
   void SetSharedExtremes(double diagonal, double longest);
 
+  /**
+   * When the vertices, with their vectors, were last uploaded, of all windows; 0: never. Options leave it alone.
+   */
+  vtkMTimeType GetUploadTime();
+
   /// Bounds of a dataset or composite, and the length of the longest vector that would steer it.
   void AddExtremes(vtkDataObject* data, vtkBoundingBox& bounds, double& longest);
 

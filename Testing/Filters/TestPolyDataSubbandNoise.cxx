@@ -370,9 +370,195 @@ TEST(PolyDataSubbandNoise, AutomaticWavelength)
   EXPECT_NEAR(filter->GetResolvedWavelength(), 8.0 / 32.0, 0.003);
   filter->SetInputData(Sheet(513, Flat, CellKind::Quads));
   filter->Update();
-  EXPECT_NEAR(filter->GetResolvedWavelength(), std::sqrt(2.0) / 50.0, 1e-9);
+  // 1/50 of the diagonal, 0.0283, on the ladder of fourth roots of 2.
+  EXPECT_NEAR(filter->GetResolvedWavelength(), std::exp2(-5.25), 1e-9);
+  // It fits into the picture where the axes have different units, and stays where the data change a little.
+  for (const double depth : { 10000.0, 10100.0 })
+  {
+    filter->SetInputData(Sheet(
+      513, [=](double u, double v) { return Eigen::Vector3d(90.0 * u, 0.0, depth * v); }));
+    filter->Update();
+    EXPECT_NEAR(filter->GetResolvedWavelength(), std::exp2(4.5), 1e-9);
+  }
   filter->SetWavelength(-3.0);
   EXPECT_EQ(filter->GetWavelength(), 0.0);
+}
+
+namespace
+{
+/// The triangles of a sheet, each with points of its own and, `atlas`, a place of its own in the texture.
+vtkSmartPointer<vtkPolyData> Apart(vtkPolyData* sheet, bool atlas)
+{
+  auto mesh = vtkSmartPointer<vtkPolyData>::New();
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> cells;
+  vtkNew<vtkFloatArray> coordinates;
+  coordinates->SetNumberOfComponents(2);
+  const vtkIdType count = sheet->GetNumberOfPolys();
+  const auto side = static_cast<vtkIdType>(std::ceil(std::sqrt(double(count))));
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    sheet->GetCellPoints(cell, ids);
+    cells->InsertNextCell(3);
+    for (int corner = 0; corner < 3; ++corner)
+    {
+      double uv[2];
+      sheet->GetPointData()->GetTCoords()->GetTuple(ids->GetId(corner), uv);
+      if (atlas)
+      {
+        uv[0] = (cell % side + 0.9 * (corner == 1)) / double(side);
+        uv[1] = (cell / side + 0.9 * (corner == 2)) / double(side);
+      }
+      cells->InsertCellPoint(points->InsertNextPoint(sheet->GetPoint(ids->GetId(corner))));
+      coordinates->InsertNextTuple(uv);
+    }
+  }
+  mesh->SetPoints(points);
+  mesh->SetPolys(cells);
+  mesh->GetPointData()->SetTCoords(coordinates);
+  return mesh;
+}
+
+Eigen::Vector3d Dome(double u, double v)
+{
+  return { u, v, 0.6 * std::sin(2.0 * u) * std::cos(1.5 * v) };
+}
+} // namespace
+
+// Of a pipe, as long as that many diameters, whose texture goes around once and along once.
+TEST(PolyDataSubbandNoise, VarianceIsOneOnEvenlyStretchedTexture)
+{
+  for (const double ratio : { 10.0, 40.0 })
+  {
+    const auto pipe = Sheet(201,
+      [=](double u, double v)
+      {
+        const double angle = 2.0 * Pi * u;
+        return Eigen::Vector3d(0.5 * std::cos(angle), 0.5 * std::sin(angle), ratio * v);
+      },
+      CellKind::Quads);
+    for (const int method : { 0, 1 })
+    {
+      for (const bool antiAlias : { false, true })
+      {
+        double squares = 0.0;
+        std::string text;
+        for (const int seed : { 0, 1 })
+        {
+          const auto noise = Noise(pipe, 0.7,
+            [&](vtkPolyDataSubbandNoise* filter)
+            {
+              filter->SetMethod(method);
+              filter->SetAntiAlias(antiAlias);
+              filter->SetSeed(seed);
+            },
+            &text);
+          squares += 0.5 * std::pow(Deviation(noise), 2);
+        }
+        // AntiAlias can only take away.
+        EXPECT_LT(std::sqrt(squares), 1.08) << ratio << " " << method << antiAlias;
+        EXPECT_GT(std::sqrt(squares), antiAlias ? 0.5 : 0.9) << ratio << " " << method << antiAlias;
+      }
+    }
+  }
+}
+
+TEST(PolyDataSubbandNoise, ChartsSmallerThanAWavelengthGiveWayToProjections)
+{
+  const auto sheet = Sheet(41, Dome);
+  const auto atlas = Apart(sheet, true);
+  const auto with = [](int parameterization)
+  {
+    return [=](vtkPolyDataSubbandNoise* filter)
+    { filter->SetParameterization(parameterization); };
+  };
+  std::string text;
+  const auto noise = Noise(atlas, 0.3, with(vtkPolyDataSubbandNoise::AUTOMATIC), &text);
+  EXPECT_NE(text.find("smaller than a wavelength (3200 of them)"), std::string::npos) << text;
+  EXPECT_EQ(noise, Noise(atlas, 0.3, with(vtkPolyDataSubbandNoise::TRIPLANAR)));
+  // One who asks for the texture gets it, and larger charts serve.
+  const auto textured = Noise(atlas, 0.3, with(vtkPolyDataSubbandNoise::TEXTURE_COORDINATES), &text);
+  EXPECT_EQ(text.find("smaller than"), std::string::npos) << text;
+  EXPECT_GT(LargestDifference(noise, textured), 0.5);
+  const auto whole = Apart(sheet, false);
+  EXPECT_EQ(Noise(whole, 0.3, with(vtkPolyDataSubbandNoise::AUTOMATIC), &text),
+    Noise(whole, 0.3, with(vtkPolyDataSubbandNoise::TEXTURE_COORDINATES)));
+}
+
+TEST(PolyDataSubbandNoise, CopiesOfAPointHaveOneValue)
+{
+  const auto sheet = Sheet(41, Dome);
+  const auto apart = Apart(sheet, false);
+  const auto planes = [](vtkPolyDataSubbandNoise* filter)
+  { filter->SetParameterization(vtkPolyDataSubbandNoise::TRIPLANAR); };
+  const auto expected = Noise(sheet, 0.3, planes);
+  const auto noise = Noise(apart, 0.3, planes);
+  vtkNew<vtkIdList> ids;
+  double worst = 0.0;
+  double difference = 0.0;
+  for (vtkIdType cell = 0; cell < sheet->GetNumberOfPolys(); ++cell)
+  {
+    sheet->GetCellPoints(cell, ids);
+    for (vtkIdType corner = 0; corner < 3; ++corner)
+    {
+      const double own = noise[static_cast<std::size_t>(3 * cell + corner)];
+      difference = std::abs(own - expected[static_cast<std::size_t>(ids->GetId(corner))]);
+      worst = std::max(worst, difference);
+    }
+  }
+  // Normals are the same but for the weights of the triangles, and so is the noise.
+  EXPECT_LT(worst, 0.15);
+}
+
+TEST(PolyDataSubbandNoise, TwoComponentsLieInThePlaneOfTheData)
+{
+  const auto upright = Sheet(65, [](double u, double v) { return Eigen::Vector3d(u, 0.0, v); });
+  const auto noise = [&](int components, const Eigen::Vector3d& vector)
+  {
+    AddVectors(upright, false, components, [&](vtkIdType) { return vector; });
+    return Noise(upright, 0.25, [](vtkPolyDataSubbandNoise* filter) { Steer(filter, false); });
+  };
+  EXPECT_EQ(noise(2, { 0.6, 0.8, 0.0 }), noise(3, { 0.6, 0.0, 0.8 }));
+}
+
+TEST(PolyDataSubbandNoise, HiddenPartsDoNotCount)
+{
+  // What is hidden, by a cell or a point, lies far away and is folded.
+  const auto sheet = [](double far)
+  {
+    const auto mesh = Sheet(65, Flat, CellKind::Quads);
+    mesh->GetPoints()->SetPoint(64, far, -far, 0.3 * far);
+    return mesh;
+  };
+  for (const bool byPoint : { false, true })
+  {
+    std::vector<float> noise[2];
+    double wavelengths[2];
+    for (const int far : { 0, 1 })
+    {
+      auto mesh = sheet(far ? 90.0 : 1.0);
+      vtkNew<vtkUnsignedCharArray> ghosts;
+      ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+      ghosts->SetNumberOfTuples(byPoint ? mesh->GetNumberOfPoints() : mesh->GetNumberOfCells());
+      ghosts->Fill(0);
+      const int hidden = byPoint ? int(vtkDataSetAttributes::HIDDENPOINT)
+                                 : int(vtkDataSetAttributes::HIDDENCELL);
+      ghosts->SetValue(byPoint ? 64 : 63, static_cast<unsigned char>(hidden));
+      (byPoint ? static_cast<vtkFieldData*>(mesh->GetPointData()) : mesh->GetCellData())
+        ->AddArray(ghosts);
+      vtkNew<vtkPolyDataSubbandNoise> filter;
+      auto messages = Listen(filter);
+      filter->SetInputData(mesh);
+      filter->Update();
+      wavelengths[far] = filter->GetResolvedWavelength();
+      noise[far] = Values(filter->GetOutput(), "SubbandNoise");
+      noise[far].erase(noise[far].begin() + 64);
+    }
+    EXPECT_EQ(wavelengths[0], wavelengths[1]) << byPoint;
+    EXPECT_EQ(noise[0], noise[1]) << byPoint;
+  }
 }
 
 TEST(PolyDataSubbandNoise, KindsOfCellsAgree)

@@ -33,6 +33,7 @@
 #include "vtkStructuredGrid.h"
 #include "vtkTransform.h"
 #include "vtkTransformFilter.h"
+#include "vtkTrivialProducer.h"
 #include "vtkUniformGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
@@ -386,6 +387,291 @@ TEST(SteerableNoiseDataSets, FlatSlabsOneCellThickAreSurfaces)
     }
     // As an image, cells one thick are a flat image.
     EXPECT_TRUE(AllFinite(Values(Apply(image).Output)));
+  }
+}
+
+namespace
+{
+/// A part of a structured dataset, with its places and arrays.
+vtkSmartPointer<vtkDataSet> Part(vtkDataSet* whole, const int (&extent)[6])
+{
+  auto part = vtkSmartPointer<vtkDataSet>::Take(whole->NewInstance());
+  part->ShallowCopy(whole);
+  if (auto* image = vtkImageData::SafeDownCast(part))
+  {
+    image->Crop(extent);
+  }
+  else if (auto* rectilinear = vtkRectilinearGrid::SafeDownCast(part))
+  {
+    rectilinear->Crop(extent);
+  }
+  else
+  {
+    vtkStructuredGrid::SafeDownCast(part)->Crop(extent);
+  }
+  return part;
+}
+
+void Straight(vtkSteerableNoiseFilter* filter)
+{
+  filter->SetFeatureSize(3.0);
+  filter->FollowCurvatureOff();
+}
+} // namespace
+
+TEST(SteerableNoiseDataSets, ABlockOneCellThickContinuesItsNeighbours)
+{
+  // 8 x 6 x 5 cells, the layers at the upper ends of each axis as blocks of their own.
+  for (const bool cells : { false, true })
+  {
+    const vtkSmartPointer<vtkDataSet> wholes[] = { Box(cells), Rectilinear(cells),
+      Through<vtkImageDataToPointSet>(Box(cells)) };
+    for (const auto& whole : wholes)
+    {
+      const std::vector<float> expected = Values(Apply(whole, Straight).Output);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        int lower[6] = { 0, 8, 0, 6, 0, 5 };
+        int upper[6] = { 0, 8, 0, 6, 0, 5 };
+        lower[2 * axis + 1] -= 1;
+        upper[2 * axis] = lower[2 * axis + 1];
+        vtkNew<vtkMultiBlockDataSet> blocks;
+        blocks->SetBlock(0, Part(whole, upper));
+        blocks->SetBlock(1, Part(whole, lower));
+        const auto output = Apply(blocks, Straight).Output;
+        const std::vector<float> noise =
+          Values(vtkMultiBlockDataSet::SafeDownCast(output)->GetBlock(0));
+        // The same samples of the whole.
+        const int more = cells ? 0 : 1;
+        std::vector<float> same;
+        for (int k = upper[4]; k < upper[5] + more; ++k)
+        {
+          for (int j = upper[2]; j < upper[3] + more; ++j)
+          {
+            for (int i = upper[0]; i < upper[1] + more; ++i)
+            {
+              same.push_back(expected[(k * (6 + more) + j) * (8 + more) + i]);
+            }
+          }
+        }
+        EXPECT_LT(LargestDifference(noise, same), 5e-6)
+          << whole->GetClassName() << (cells ? " cells " : " points ") << axis;
+      }
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, APieceOneCellThickIsAPieceOfItsWhole)
+{
+  // Of a source in pieces: the extent of the whole decides.
+  for (const auto& whole : { vtkSmartPointer<vtkDataSet>(Rectilinear(false)),
+         Through<vtkImageDataToPointSet>(Box(false)) })
+  {
+    const std::vector<float> expected = Values(Apply(whole, Straight).Output);
+    vtkNew<vtkTrivialProducer> source;
+    source->SetOutput(Part(whole, { 0, 8, 0, 6, 4, 5 }));
+    source->SetWholeExtent(0, 8, 0, 6, 0, 5);
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    filter->SetInputConnection(source->GetOutputPort());
+    Straight(filter);
+    filter->UpdateInformation();
+    const int part[6] = { 0, 8, 0, 6, 4, 5 };
+    filter->UpdateExtent(part);
+    EXPECT_LT(LargestDifference(Values(filter->GetOutputDataObject(0)),
+                std::vector<float>(expected.end() - 2 * 63, expected.end())),
+      5e-6)
+      << whole->GetClassName();
+  }
+}
+
+TEST(SteerableNoiseDataSets, FlatImagesOfACompositeHaveOneKindOfNoise)
+{
+  // A column one cell wide is flat along another axis, but not next to the rest of its image.
+  const auto flat = MakeImage(12, 9, 1, 1.0, true);
+  vtkNew<vtkMultiBlockDataSet> columns;
+  columns->SetBlock(0, Part(flat, { 0, 10, 0, 8, 0, 0 }));
+  columns->SetBlock(1, Part(flat, { 10, 11, 0, 8, 0, 0 }));
+  const std::vector<float> expected = Values(Apply(flat, Straight).Output);
+  std::vector<float> column;
+  for (std::size_t row = 0; row < 8; ++row)
+  {
+    column.push_back(expected[11 * row + 10]);
+  }
+  const auto block = [](vtkDataObject* output, unsigned int index)
+  { return Values(vtkMultiBlockDataSet::SafeDownCast(output)->GetBlock(index)); };
+  EXPECT_LT(LargestDifference(block(Apply(columns, Straight).Output, 1), column), 5e-6);
+
+  // Next to other surfaces, or another plane, an image is a surface in space.
+  const auto image = MakeImage(12, 9, 1);
+  const vtkSmartPointer<vtkDataSet> grid = Through<vtkImageDataToPointSet>(image);
+  const std::vector<float> surface = Values(Apply(grid, Straight).Output);
+  vtkNew<vtkImageData> across;
+  across->SetDimensions(12, 1, 9);
+  AddFlow(across);
+  for (vtkDataSet* other : { grid.Get(), static_cast<vtkDataSet*>(across.Get()) })
+  {
+    vtkNew<vtkMultiBlockDataSet> blocks;
+    blocks->SetBlock(0, image);
+    blocks->SetBlock(1, other);
+    EXPECT_LT(LargestDifference(block(Apply(blocks, Straight).Output, 0), surface), 5e-6) << other->GetClassName();
+  }
+  // Two in the same plane are as one, in the plane.
+  vtkNew<vtkMultiBlockDataSet> two;
+  two->SetBlock(0, image);
+  two->SetBlock(1, image);
+  EXPECT_EQ(block(Apply(two, Straight).Output, 0), Values(Apply(image, Straight).Output));
+}
+
+TEST(SteerableNoiseDataSets, ImagesInCompositesAreMagnified)
+{
+  const auto fine = [](vtkSteerableNoiseFilter* filter)
+  {
+    filter->SetFeatureSize(3.0);
+    filter->SetMagnification(3);
+  };
+  for (const bool cells : { false, true })
+  {
+    const vtkSmartPointer<vtkDataSet> images[] = { MakeImage(12, 9, 1, 1.0, cells), Box(cells) };
+    for (const auto& image : images)
+    {
+      vtkNew<vtkPartitionedDataSet> parts;
+      parts->SetPartition(0, image);
+      vtkNew<vtkPartitionedDataSetCollection> collection;
+      collection->SetPartitionedDataSet(0, parts);
+      const Result result = Apply(collection, fine);
+      auto* output = vtkPartitionedDataSetCollection::SafeDownCast(result.Output);
+      EXPECT_EQ(Values(output->GetPartition(0, 0)), Values(Apply(image, fine).Output));
+      EXPECT_EQ(result.Errors + result.Warnings, 0) << result.Text;
+    }
+  }
+  // Others pass beside them.
+  vtkNew<vtkMultiBlockDataSet> mixed;
+  mixed->SetBlock(0, Box(false));
+  mixed->SetBlock(1, Rectilinear(false));
+  const Result result = Apply(mixed, fine);
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(result.Output);
+  EXPECT_EQ(Values(output->GetBlock(0)).size(), std::size_t(25 * 19 * 16));
+  EXPECT_EQ(Values(output->GetBlock(1)).size(), std::size_t(9 * 7 * 6));
+
+  // All of them together have to fit.
+  vtkNew<vtkMultiBlockDataSet> large;
+  for (unsigned int i = 0; i < 4; ++i)
+  {
+    auto image = Box(false);
+    image->SetDimensions(30000, 30000, 1000); // never filled
+    large->SetBlock(i, image);
+  }
+  const Result refused = Apply(large, [](auto* filter) { filter->SetMagnification(16); });
+  EXPECT_GE(refused.Errors, 1);
+  EXPECT_NE(refused.Text.find("Lower Magnification"), std::string::npos) << refused.Text;
+}
+
+TEST(SteerableNoiseDataSets, MagnificationNamesTheImagesOfAnAMR)
+{
+  vtkNew<vtkNonOverlappingAMR> amr;
+  const int blocks[1] = { 2 };
+  amr->Initialize(1, blocks);
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    vtkNew<vtkUniformGrid> grid;
+    grid->SetDimensions(5, 5, 5);
+    grid->SetOrigin(4.0 * i, 0.0, 0.0);
+    AddFlow(grid, true);
+    amr->SetDataSet(0, i, grid);
+  }
+  const auto configure = [](int magnification)
+  {
+    return [=](vtkSteerableNoiseFilter* filter)
+    {
+      filter->SetFeatureSize(4.0);
+      filter->SetMagnification(magnification);
+    };
+  };
+  const Result plain = Apply(amr, configure(1));
+  const Result fine = Apply(amr, configure(4));
+  EXPECT_EQ(plain.Warnings, 0) << plain.Text;
+  EXPECT_EQ(fine.Warnings, 1);
+  EXPECT_NE(fine.Text.find("leaves the 2 images of an AMR"), std::string::npos) << fine.Text;
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    EXPECT_EQ(Values(vtkNonOverlappingAMR::SafeDownCast(fine.Output)->GetDataSet(0, i)),
+      Values(vtkNonOverlappingAMR::SafeDownCast(plain.Output)->GetDataSet(0, i)));
+  }
+}
+
+TEST(SteerableNoiseDataSets, HiddenCellsDoNotChangeMagnifiedOnes)
+{
+  std::vector<float> noise[2];
+  for (const double left : { 1.0, 50.0 })
+  {
+    auto image = MakeImage(13, 9, 1, 1.0, true);
+    vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    for (int cell = 0; cell < 96; ++cell)
+    {
+      const bool hidden = cell % 12 < 5;
+      ghosts->InsertNextValue(hidden ? vtkDataSetAttributes::REFINEDCELL : 0);
+      if (hidden)
+      {
+        image->GetCellData()->GetVectors()->SetTuple3(cell, -left, left, 0.0);
+      }
+    }
+    image->GetCellData()->AddArray(ghosts);
+    const Result result = Apply(image,
+      [](vtkSteerableNoiseFilter* filter)
+      {
+        filter->SetFeatureSize(4.0);
+        filter->SetMagnification(3);
+      });
+    const std::vector<float> all = Values(result.Output);
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+      if (i % 36 >= 15)
+      {
+        noise[left > 1.0].push_back(all[i]);
+      }
+    }
+  }
+  EXPECT_EQ(noise[0].size(), std::size_t(21 * 24));
+  EXPECT_EQ(noise[0], noise[1]);
+}
+
+TEST(SteerableNoiseDataSets, PatchesOneCellThickInAnAMRAreNotFlat)
+{
+  vtkNew<vtkNonOverlappingAMR> amr;
+  const int blocks[2] = { 1, 3 };
+  amr->Initialize(2, blocks);
+  vtkNew<vtkUniformGrid> coarse;
+  coarse->SetDimensions(5, 5, 5);
+  coarse->SetSpacing(2.0, 2.0, 2.0);
+  AddFlow(coarse, true);
+  amr->SetDataSet(0, 0, coarse);
+  const auto fine = MakeImage(9, 9, 9, 1.0, true);
+  const std::vector<float> expected = Values(Apply(fine, Straight).Output);
+  for (unsigned int axis = 0; axis < 3; ++axis)
+  {
+    vtkNew<vtkUniformGrid> patch;
+    int extent[6] = { 0, 8, 0, 8, 0, 8 };
+    extent[2 * axis + 1] = 1;
+    patch->SetExtent(extent);
+    AddFlow(patch, true);
+    amr->SetDataSet(1, axis, patch);
+  }
+  const Result result = Apply(amr, Straight);
+  auto* output = vtkNonOverlappingAMR::SafeDownCast(result.Output);
+  for (unsigned int axis = 0; axis < 3; ++axis)
+  {
+    const std::vector<float> noise = Values(output->GetDataSet(1, axis));
+    std::vector<float> same;
+    for (int cell = 0; cell < 512; ++cell)
+    {
+      const int index[3] = { cell % 8, cell / 8 % 8, cell / 64 };
+      if (index[axis] == 0)
+      {
+        same.push_back(expected[static_cast<std::size_t>(cell)]);
+      }
+    }
+    EXPECT_LT(LargestDifference(noise, same), 5e-6) << axis;
   }
 }
 
@@ -933,6 +1219,51 @@ TEST(SteerableNoiseDataSets, SeamsOfClosedGridsDoNotShow)
   }
 }
 
+TEST(SteerableNoiseDataSets, CellsGoOnAroundAClosedGrid)
+{
+  // The same rings of cells, cut open at two places; flow that bends more and more along the way around.
+  constexpr int around = 48;
+  constexpr int layers = 12;
+  const auto run = [&](int cut)
+  {
+    vtkNew<vtkStructuredGrid> grid;
+    grid->SetDimensions(around + 1, layers + 1, 1);
+    vtkNew<vtkPoints> points;
+    points->SetDataTypeToDouble();
+    for (int k = 0; k <= layers; ++k)
+    {
+      for (int i = 0; i <= around; ++i)
+      {
+        const double angle = 2.0 * vtkMath::Pi() * (i + cut) / around;
+        const double r = 2.0 + 0.2 * k;
+        points->InsertNextPoint(r * std::cos(angle), r * std::sin(angle), 0.0);
+      }
+    }
+    grid->SetPoints(points);
+    vtkNew<vtkDoubleArray> flow;
+    flow->SetName("velocity");
+    flow->SetNumberOfComponents(3);
+    for (int cell = 0; cell < around * layers; ++cell)
+    {
+      const double angle = 2.0 * vtkMath::Pi() * (cell % around + cut + 0.5) / around;
+      const double turned = angle + 0.5 * std::sin(angle);
+      flow->InsertNextTuple3(-std::sin(turned), std::cos(turned), 0.0);
+    }
+    grid->GetCellData()->SetVectors(flow);
+    return Values(Apply(grid, [](vtkSteerableNoiseFilter* f) { f->SetFeatureSize(1.2); }).Output);
+  };
+  const std::vector<float> whole = run(0);
+  const std::vector<float> turned = run(around / 2);
+  double squares = 0.0;
+  for (int cell = 0; cell < around * layers; ++cell)
+  {
+    const int same = cell / around * around + (cell + around / 2) % around;
+    squares += std::pow(whole[same] - turned[cell], 2.0) / (around * layers);
+  }
+  std::printf("cells of a closed grid, cut elsewhere: rms %g\n", std::sqrt(squares));
+  EXPECT_LT(std::sqrt(squares), 1e-4);
+}
+
 /// The same two components in the x-y, x-z and y-z planes: those of vectors with a third that is 0.
 TEST(SteerableNoiseDataSets, TwoComponentsLieInThePlaneOfTheData)
 {
@@ -967,6 +1298,297 @@ TEST(SteerableNoiseDataSets, TwoComponentsLieInThePlaneOfTheData)
       };
       EXPECT_LT(LargestDifference(noise("two"), noise(three->GetName())), 1e-5)
         << a << b << " structured " << structured;
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, VectorsThatLeaveThePlaneHaveOneLength)
+{
+  // In the plane 1 everywhere, out of it 0 to 3: flat images, in every plane, mask and grow as surfaces do.
+  const double along = 1.0 / 36.0;
+  for (const int flat : { 0, 1, 2 })
+  {
+    int dims[3] = { 9, 9, 9 };
+    dims[flat] = 1;
+    const auto image = MakeImage(dims[0], dims[1], dims[2]);
+    const vtkIdType count = image->GetNumberOfPoints();
+    vtkDataArray* vectors = image->GetPointData()->GetVectors();
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      double v[3] = { 0.0, 0.0, 0.0 };
+      v[(flat + 1) % 3] = 0.6;
+      v[(flat + 2) % 3] = 0.8;
+      v[flat] = 3.0 * static_cast<double>(i) / static_cast<double>(count - 1);
+      vectors->SetTuple(i, v);
+    }
+    for (const bool surface : { false, true })
+    {
+      vtkSmartPointer<vtkDataSet> dataset = image;
+      if (surface)
+      {
+        dataset = Through<vtkAppendFilter>(image);
+      }
+      vtkIdType stagnant = 0;
+      const auto output = Apply(dataset,
+        [&](vtkSteerableNoiseFilter* filter)
+        {
+          filter->SetFeatureSize(4.0);
+          filter->FollowCurvatureOff();
+          filter->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE);
+          filter->SetMaskThreshold(2.0);
+          filter->OutputMetricOn();
+          filter->Update();
+          stagnant = filter->GetNumberOfStagnantSamples();
+        }).Output;
+      const std::vector<float> noise = Values(output);
+      vtkDataArray* metrics =
+        vtkDataSet::SafeDownCast(output)->GetPointData()->GetArray("Metric");
+      vtkIdType expected = 0;
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        const double length = std::hypot(1.0, vectors->GetComponent(i, flat));
+        expected += length <= 2.0;
+        EXPECT_EQ(noise[i] == 0.0f, length <= 2.0) << flat << surface << " " << length;
+        double m[6];
+        metrics->GetTuple(i, m);
+        Eigen::Matrix3d metric;
+        metric << m[0], m[3], m[5], m[3], m[1], m[4], m[5], m[4], m[2];
+        Eigen::Vector3d u = Eigen::Vector3d::Zero();
+        u[(flat + 1) % 3] = 0.6;
+        u[(flat + 2) % 3] = 0.8;
+        // The longest, of which the reference is one, has the whole strength.
+        const double strength = length / std::sqrt(10.0);
+        EXPECT_NEAR(u.dot(metric * u), 1.0 + strength * (along - 1.0), 1e-5) << flat << surface;
+      }
+      EXPECT_EQ(stagnant, expected);
+      EXPECT_GT(expected, 10);
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, FillValuesAreLeftOut)
+{
+  // A flow with a disc of missing values: what is outside is as if they were NaN.
+  const auto disc = [](vtkDataSet* dataset, vtkIdType i)
+  {
+    double p[3];
+    dataset->GetPoint(i, p);
+    return std::hypot(p[0] - 20.0, p[1] - 20.0) < 9.0;
+  };
+  const auto fill = [&](vtkDataSet* dataset, double u, double v)
+  {
+    vtkIdType count = 0;
+    vtkDataArray* vectors = dataset->GetPointData()->GetVectors();
+    for (vtkIdType i = 0; i < dataset->GetNumberOfPoints(); ++i)
+    {
+      if (disc(dataset, i))
+      {
+        vectors->SetTuple3(i, u, v, 0.0);
+        ++count;
+      }
+    }
+    return count;
+  };
+  for (const bool unstructured : { false, true })
+  {
+    const auto make = [&]() -> vtkSmartPointer<vtkDataSet>
+    {
+      auto image = MakeImage(41, 41, 1);
+      vtkSmartPointer<vtkDataSet> grid = Through<vtkAppendFilter>(image);
+      return unstructured ? grid : vtkSmartPointer<vtkDataSet>(image);
+    };
+    const auto configure = [](vtkSteerableNoiseFilter* filter)
+    {
+      filter->SetFeatureSize(5.0);
+      filter->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE);
+    };
+    const auto missing = make();
+    const vtkIdType count = fill(missing, std::nan(""), std::nan(""));
+    ASSERT_GT(count, 100);
+    const std::vector<float> expected = Values(Apply(missing, configure).Output);
+    const double values[][2] = { { -30000, -30000 }, { 1e20, 1e20 }, { 9.96921e36, 0.5 }, { -9999, 0 },
+      { 99, 99 } };
+    for (const auto& value : values)
+    {
+      const auto input = make();
+      fill(input, value[0], value[1]);
+      vtkIdType found = 0;
+      const Result result = Apply(input,
+        [&](vtkSteerableNoiseFilter* filter)
+        {
+          configure(filter);
+          filter->Update();
+          found = filter->GetNumberOfOverlongSamples();
+          EXPECT_EQ(filter->GetNumberOfDegenerateSamples(), 0);
+        });
+      EXPECT_EQ(found, count) << value[0];
+      EXPECT_EQ(result.Warnings, 1) << value[0];
+      std::ostringstream name;
+      name << count << " samples hold " << value[0] << ",";
+      EXPECT_NE(result.Text.find(name.str()), std::string::npos) << result.Text;
+      const std::vector<float> noise = Values(result.Output);
+      for (std::size_t i = 0; i < noise.size(); ++i)
+      {
+        ASSERT_EQ(noise[i], disc(input, static_cast<vtkIdType>(i)) ? 0.0f : expected[i]) << value[0];
+      }
+    }
+  }
+  // Interpolated ones go with them, and a block of nothing else does not change the rule.
+  auto image = MakeImage(41, 41, 1);
+  fill(image, -30000, -30000);
+  auto land = MakeImage(9, 9, 1);
+  land->SetOrigin(12.0, 12.0, 0.0);
+  land->GetPointData()->GetVectors()->Fill(-30000);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, land);
+  blocks->SetBlock(1, image);
+  for (vtkDataObject* input : { static_cast<vtkDataObject*>(image.Get()),
+         static_cast<vtkDataObject*>(blocks.Get()) })
+  {
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    auto messages = Listen(filter);
+    filter->SetInputDataObject(input);
+    filter->SetFeatureSize(5.0);
+    filter->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE);
+    filter->SetMagnification(input == image.Get() ? 4 : 1);
+    filter->OutputMetricOn();
+    filter->Update();
+    EXPECT_NE(messages->Text.find("hold -30000"), std::string::npos) << messages->Text;
+    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    if (!output)
+    {
+      output = vtkDataSet::SafeDownCast(
+        vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetBlock(1));
+      EXPECT_GT(filter->GetNumberOfOverlongSamples(), 81);
+    }
+    // In the open the strength is that of flow of at most 3.
+    vtkDataArray* metrics = output->GetPointData()->GetArray("Metric");
+    double m[6];
+    metrics->GetTuple(0, m);
+    EXPECT_GT(m[0] + m[1], 2.4);
+    vtkDataArray* vectors = output->GetPointData()->GetVectors();
+    const std::vector<float> noise = Values(output);
+    for (vtkIdType i = 0; i < output->GetNumberOfPoints(); ++i)
+    {
+      double v[3];
+      vectors->GetTuple(i, v);
+      if (vtkMath::Norm(v) > 4.0)
+      {
+        ASSERT_EQ(noise[static_cast<std::size_t>(i)], 0.0f) << vtkMath::Norm(v);
+      }
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, WhatStandsOutIsNotAlwaysAFillValue)
+{
+  struct Case
+  {
+    const char* Name;
+    std::function<double(int)> Length; // of sample i of 1600
+    double Upper;
+    vtkIdType LeftOut;
+    const char* Says;
+  };
+  const auto last = [](double value)
+  { return [value](int i) { return i >= 1590 ? value : 1.0 + 0.001 * i; }; };
+  const Case cases[] = { { "98", last(98.0), 0.0, 0, nullptr },
+    { "16 times", last(16.2 * 2.589), 0.0, 0, nullptr },
+    { "99", last(99.0), 0.0, 10, "10 samples hold 99," },
+    { "by hand", last(98.0), 50.0, 10, nullptr },
+    { "none by hand", last(1e20), 1e300, 0, nullptr },
+    { "two of them", [](int i) { return i < 5 ? 1e20 : i < 12 ? -9999.0 : 2.0; }, 0.0, 12, "hold 1e+20" },
+    { "a decade a hundred samples", [](int i) { return std::pow(10.0, i / 100.0 - 8.0); }, 0.0, 0,
+      nullptr },
+    { "a jet beside rounding", [](int i) { return i < 800 ? 1e-14 * i : 0.5 * i; }, 0.0, 0,
+      "800 vectors are far longer" },
+    { "smeared", [](int i) { return i > 1590 ? 3000.0 * (i - 1590) : 2.0; }, 0.0, 0,
+      "set MaskUpperThreshold 4." } };
+  for (const Case& c : cases)
+  {
+    auto image = MakeImage(40, 40, 1);
+    vtkDataArray* vectors = image->GetPointData()->GetVectors();
+    for (int i = 0; i < 1600; ++i)
+    {
+      vectors->SetTuple3(i, c.Length(i), 0.0, 0.0);
+    }
+    vtkIdType leftOut = -1;
+    const Result result = Apply(image,
+      [&](vtkSteerableNoiseFilter* filter)
+      {
+        filter->SetFeatureSize(5.0);
+        filter->SetMaskUpperThreshold(c.Upper);
+        filter->SetMaskThreshold(1e-30); // some are 0
+        filter->Update();
+        leftOut = filter->GetNumberOfOverlongSamples();
+      });
+    EXPECT_EQ(leftOut, c.LeftOut) << c.Name;
+    EXPECT_EQ(result.Warnings, c.Says ? 1 : 0) << c.Name << result.Text;
+    EXPECT_NE(result.Text.find(c.Says ? c.Says : ""), std::string::npos) << c.Name << result.Text;
+    const std::vector<float> noise = Values(result.Output);
+    EXPECT_GE(std::count(noise.begin(), noise.end(), 0.0f), c.LeftOut) << c.Name;
+  }
+}
+
+TEST(SteerableNoiseDataSets, CurvedCellsHaveANormalAtEachPoint)
+{
+  // A saddle of degree 2, which all of these cells hold exactly.
+  const auto place = [](double r, double s)
+  { return Eigen::Vector3d(r, s, 0.9 * r * r + 0.4 * r * s - 0.7 * s * s); };
+  const auto normal = [](double r, double s)
+  { return Eigen::Vector3d(-1.8 * r - 0.4 * s, -0.4 * r + 1.4 * s, 1.0).normalized(); };
+  const std::pair<int, int> types[] = { { VTK_QUADRATIC_TRIANGLE, 6 },
+    { VTK_BIQUADRATIC_TRIANGLE, 7 }, { VTK_QUADRATIC_QUAD, 8 }, { VTK_BIQUADRATIC_QUAD, 9 },
+    { VTK_LAGRANGE_TRIANGLE, 6 }, { VTK_LAGRANGE_TRIANGLE, 10 }, { VTK_LAGRANGE_QUADRILATERAL, 9 },
+    { VTK_LAGRANGE_QUADRILATERAL, 25 } };
+  for (const auto& [type, count] : types)
+  {
+    // Where its points are, as VTK has it.
+    const auto any = Cells(type, std::vector<double>(3 * static_cast<std::size_t>(count), 1.0));
+    vtkCell* kind = any->GetCell(0);
+    const double* parameters = kind->GetParametricCoords();
+    std::vector<double> coordinates;
+    for (int i = 0; i < count; ++i)
+    {
+      const Eigen::Vector3d p = place(parameters[3 * i], parameters[3 * i + 1]);
+      coordinates.insert(coordinates.end(), p.data(), p.data() + 3);
+    }
+    double center[3];
+    kind->GetParametricCenter(center);
+    const auto grid = Cells(type, coordinates);
+    for (const bool cells : { false, true })
+    {
+      if (cells)
+      {
+        grid->GetPointData()->Initialize();
+        AddFlow(grid, true);
+      }
+      const Result result = Apply(grid,
+        [](vtkSteerableNoiseFilter* filter)
+        {
+          filter->SetFeatureSize(2.0);
+          filter->FollowCurvatureOff();
+          filter->OutputMetricOn();
+        });
+      auto* output = vtkDataSet::SafeDownCast(result.Output);
+      vtkDataArray* metrics =
+        cells ? output->GetCellData()->GetArray("Metric") : output->GetPointData()->GetArray("Metric");
+      ASSERT_NE(metrics, nullptr);
+      for (vtkIdType i = 0; i < metrics->GetNumberOfTuples(); ++i)
+      {
+        double m[6];
+        metrics->GetTuple(i, m);
+        Eigen::Matrix3d metric;
+        metric << m[0], m[3], m[5], m[3], m[1], m[4], m[5], m[4], m[2];
+        // 0.5 lies along the normal, 1/36 along the flow, and the rest of 3.2 across.
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(metric);
+        EXPECT_NEAR(axes.eigenvalues()[1], 0.5, 1e-5);
+        const Eigen::Vector3d expected = cells ? normal(center[0], center[1])
+                                               : normal(parameters[3 * i], parameters[3 * i + 1]);
+        const double off = axes.eigenvectors().col(1).cross(expected).norm();
+        EXPECT_LT(off, 2e-4) << "type " << type << " of " << count << (cells ? " cell" : " point")
+                             << i;
+      }
     }
   }
 }

@@ -896,7 +896,7 @@ TEST(SteerableNoiseFilter, EveryPropertyIsPrinted)
          "LatticeWindow", "Strength", "StrengthMode", "ReferenceMagnitude", "Normalization",
          "FollowCurvature", "Basis", "Density", "Phase", "Animate", "Speed", "TimePeriod",
          "Octaves", "Lacunarity", "Gain", "Turbulence", "Fade", "Falloff", "Lattice", "GradientSet",
-         "Period", "Magnification", "MaskThreshold", "Seed", "ResultArrayName", "OutputMetric" })
+         "Period", "Magnification", "MaskThreshold", "MaskUpperThreshold", "Seed", "ResultArrayName", "OutputMetric" })
   {
     EXPECT_NE(text.str().find(name), std::string::npos) << name;
   }

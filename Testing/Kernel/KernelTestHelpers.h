@@ -97,7 +97,7 @@ AxialMetric<N> ReferenceMetric(
     const float* t = samples.Tensors.data() + 6 * i;
     Matrix<3> full;
     full << t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2];
-    return MetricFromTensor<N>(parameters, full.topLeftCorner<N, N>());
+    return MetricFromTensor<N>(parameters, full.topLeftCorner<N, N>(), full.norm());
   }
   if constexpr (N == 3)
   {
@@ -107,7 +107,9 @@ AxialMetric<N> ReferenceMetric(
         parameters, samples.Get<3>(samples.Vectors, i), samples.Get<3>(samples.Normals, i));
     }
   }
-  return MetricFromVector<N>(parameters, samples.Get<N>(samples.Vectors, i));
+  // In 2D a vector keeps its length where it leaves the plane.
+  return MetricFromVector<N>(parameters, samples.Get<N>(samples.Vectors, i),
+    samples.Get<3>(samples.Vectors, i).norm());
 }
 
 /// Noise of all samples through the fast path.

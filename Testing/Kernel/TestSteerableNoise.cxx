@@ -431,13 +431,14 @@ template <int N>
 std::vector<double> SlowImage(
   const NoiseParameters& parameters, const ImageGrid& grid, const std::vector<float>& vectors)
 {
-  const auto at = [&](const std::array<std::int64_t, 3>& index)
+  const auto whole = [&](const std::array<std::int64_t, 3>& index)
   {
     const std::int64_t flat =
       (index[2] * grid.Dimensions[1] + index[1]) * grid.Dimensions[0] + index[0];
-    return Vector<N>(
-      Eigen::Map<const Eigen::Vector3f>(vectors.data() + 3 * flat).cast<double>().head(N));
+    return Vector<3>(Eigen::Map<const Eigen::Vector3f>(vectors.data() + 3 * flat).cast<double>());
   };
+  const auto at = [&](const std::array<std::int64_t, 3>& index)
+  { return Vector<N>(whole(index).template head<N>()); };
   std::vector<double> noise;
   std::array<std::int64_t, 3> i;
   for (i[2] = 0; i[2] < grid.Dimensions[2]; ++i[2])
@@ -467,7 +468,7 @@ std::vector<double> SlowImage(
           }
         }
         noise.push_back(SteerableNoiseReference<N>(
-          parameters, place, MetricFromVector<N>(parameters, at(i)), curvature));
+          parameters, place, MetricFromVector<N>(parameters, at(i), whole(i).norm()), curvature));
       }
     }
   }
@@ -1403,6 +1404,38 @@ TEST(SteerableNoise, LooksAtThePlaneOnlyInThePlane)
     samples.Curvature[3 * i + 2] = 1e20f;
   }
   EXPECT_EQ(FastNoise<2>(parameters, samples, Steering::Vectors), noise);
+}
+
+TEST(SteerableNoise, InAPlaneTheLengthIsThatOfTheWholeVector)
+{
+  NoiseParameters parameters;
+  parameters.FollowCurvature = false;
+  parameters.MaskThreshold = 2.0;
+  for (std::int64_t target : SimdLevels())
+  {
+    const SimdLevel level(target);
+    RandomSamples samples(300, 30.0, 0.0, 8);
+    // In the plane alone; out of it, longer than the threshold; on it, with a direction that is rounding.
+    for (std::size_t i = 0; i < samples.Count; ++i)
+    {
+      const float vectors[3][3] = { { 1.0f, 0.5f, 0.0f }, { 1.0f, 0.5f, 3.0f }, { 1e-6f, 0.0f, 3.0f } };
+      const float tensors[3][6] = { { 1.0f, 0.2f, 0.0f, 0.1f, 0.0f, 0.0f },
+        { 1.0f, 0.2f, 0.0f, 0.1f, 1.5f, 0.0f }, { 1.0f, 1.0f, 3.0f, 0.0f, 0.0f, 0.0f } };
+      std::copy_n(vectors[i % 3], 3, samples.Vectors.data() + 3 * i);
+      std::copy_n(tensors[i % 3], 6, samples.Tensors.data() + 6 * i);
+    }
+    for (const Steering steering : { Steering::Vectors, Steering::Tensors })
+    {
+      EvaluationCounts counts;
+      const std::vector<float> noise = FastNoise<2>(parameters, samples, steering, &counts);
+      EXPECT_EQ(counts.Stagnant, 100u);
+      EXPECT_EQ(counts.Degenerate, 100u);
+      for (std::size_t i = 0; i < samples.Count; ++i)
+      {
+        EXPECT_EQ(noise[i] == 0.0f, i % 3 == 0) << i;
+      }
+    }
+  }
 }
 
 TEST(SteerableNoise, DoesNotKnowTheSenseOfTheVector)

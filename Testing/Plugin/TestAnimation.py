@@ -8,9 +8,11 @@ import numpy
 import plugintest as pt
 import steerablenoise  # so that the filter's own object has its methods
 from paraview import simple
-from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 
 FRAMES = 4
 
@@ -66,4 +68,29 @@ still = pt.array(filter_object.GetOutput())
 simple.UpdatePipeline(time=0.6, proxy=noise)
 pt.check(bool((still == pt.array(filter_object.GetOutput())).all()), "still noise at any time")
 simple.Delete(view)
+
+# A file of a single time, 313, is steady data too.
+with tempfile.TemporaryDirectory() as folder:
+    image = vtkRTAnalyticSource()
+    image.SetWholeExtent(-16, 16, -16, 16, 0, 0)
+    image.Update()
+    once = image.GetOutput()
+    flow = numpy_to_vtk(numpy.tile([1.0, 0.4, 0.0], (33 * 33, 1)), deep=1)
+    flow.SetName("flow")
+    once.GetPointData().SetVectors(flow)
+    time = numpy_to_vtk(numpy.array([313.0]), deep=1)
+    time.SetName("TimeValue")
+    once.GetFieldData().AddArray(time)
+    writer = vtkXMLImageDataWriter()
+    writer.SetDataModeToBinary()
+    writer.SetFileName(os.path.join(folder, "once.vti"))
+    writer.SetInputData(once)
+    writer.Write()
+    sys.argv = ["animate.py", writer.GetFileName(), os.path.join(folder, "frames"), str(FRAMES)]
+    made = runpy.run_path(os.path.join(pt.SOURCE, "Utilities", "animate.py"))
+    simple.Delete(made["view"])
+    frames = [pixels(os.path.join(folder, "frames", "frame_%04d.png" % i)) for i in range(FRAMES)]
+    for i in range(FRAMES):
+        difference = abs(frames[i] - frames[(i + 1) % FRAMES]).mean()
+        pt.check(difference > 3, "one time in the file: frame %d differs from the next one, mean %g" % (i, difference))
 pt.finish()

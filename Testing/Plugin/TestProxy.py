@@ -85,7 +85,7 @@ CHANGES = dict(
     FeatureSize=0.5, StreakLength=3, EigenvalueSum=6.0, LatticeWindow=1,
     Strength=0.5, StrengthMode="Magnitude", Normalization="None", FollowCurvature=0, Basis="Value",
     Phase=0.3, Animate=1, Octaves=2, Turbulence=1, Fade="Cubic",
-    Lattice="Jittered", GradientSet="Perlin", Period=[4, 4, 0], MaskThreshold=0.5, Seed=7,
+    Lattice="Jittered", GradientSet="Perlin", Period=[4, 4, 0], MaskThreshold=0.5, MaskUpperThreshold=1.0, Seed=7,
 )
 for name, value in CHANGES.items():
     changed = simple.SteerableNoise(Input=wake, **{name: value})

@@ -11,6 +11,7 @@ from paraview.simple import *
 from paraview.servermanager import vtkSMPropertyHelper
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
+from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 plugintest.load_plugin()
 from steerablenoise import vtkSteerableNoiseMapper
@@ -61,6 +62,8 @@ sources = {
     "slice": Slice(Input=vectors),
     "clip": Clip(Input=vectors),
     "cells": PointDatatoCellData(Input=vectors),
+    "amr": Calculator(Input=AMRGaussianPulseSource(), AttributeType="Cell Data", ResultArrayName="V",
+                      Function="iHat+0.5*jHat"),
 }
 sources["slice"].SliceType.Origin = [10, 10, 10]
 sources["slice"].SliceType.Normal = [0, 0, 1]
@@ -68,12 +71,24 @@ sources["clip"].ClipType.Origin = [10, 10, 10]
 for name, source in sources.items():
     view = new_view()
     display, plain = show(source, view)
-    association = "CELLS" if name == "cells" else "POINTS"
+    association = "CELLS" if name in ("cells", "amr") else "POINTS"
     chosen = display.NoiseVectors
     assert chosen[1] == "V" and (chosen[0] or "POINTS") == association, (name, list(chosen))
     noisy = picture(view, name)
     change = numpy.abs(noisy - plain)
     assert change.mean() > 3.0, (name, change.mean())
+    # Turning a large scene shows the mesh of ParaView's level of detail: with streaks, never a blank.
+    if name in ("polydata", "unstructured"):
+        view.LODThreshold = 0.0
+        view.SMProxy.InteractiveRender()
+        assert view.SMProxy.GetClientSideObject().GetUseLODForInteractiveRender(), name
+        grabbed = vtkWindowToImageFilter()
+        grabbed.SetInput(view.GetRenderWindow())
+        grabbed.ShouldRerenderOff()
+        grabbed.Update()
+        values = vtk_to_numpy(grabbed.GetOutput().GetPointData().GetScalars()).astype(float).mean(axis=1)
+        inside = values[numpy.abs(values - values[0]) > 1.0]
+        assert len(inside) > 5000 and inside.std() > 10.0, (name, len(inside), inside.std())
     Delete(view)
 
 # Defaults: those of the mapper.
@@ -104,6 +119,37 @@ for name, value in options.items():
     now = picture(view, "options")
     assert numpy.abs(now - last).max() > 2.0, name
     last = now
+
+# Animation: the frames of a loop differ, their surface stays where it is.
+display.NoiseTimePeriod = 4.0
+view.ViewTime = 0.0
+scene = GetAnimationScene()
+scene.PlayMode = "Sequence"
+scene.StartTime, scene.EndTime, scene.NumberOfFrames = 0.0, 3.0, 4
+frames = os.path.join(tempfile.mkdtemp(), "frame.png")
+SaveAnimation(frames, view, scene, ImageResolution=[400, 300], FrameWindow=[0, 3])
+shown = []
+for frame in range(4):
+    reader = vtkPNGReader()
+    reader.SetFileName(frames.replace(".png", ".%04d.png" % frame))
+    reader.Update()
+    shown.append(vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(float))
+for frame in range(4):
+    change = numpy.abs(shown[frame] - shown[frame - 1]).mean()
+    assert change > 0.5, (frame, change)
+scene.AnimationTime = 0.0
+
+# The trace names the representation and its array.
+from paraview import smtrace
+smtrace.start_trace(preamble="")
+traced = CreateView("RenderView")
+traced_display = Show(vectors, traced)
+traced_display.SetRepresentationType("Steerable Noise")
+Hide(vectors, traced)
+text = smtrace.stop_trace()
+text = text if isinstance(text, str) else "\n".join(text)
+assert "SetRepresentationType('Steerable Noise')" in text and "NoiseVectors = ['POINTS', 'V']" in text, text
+Delete(traced)
 
 # A state file brings the same picture back (of a view whose time is that of the animation).
 display.NoiseTimePeriod = 0.0

@@ -34,6 +34,20 @@ try:
     picture = os.path.join(pt.OUTPUT, "server.png")
     simple.SaveScreenshot(picture, view)
     pt.check(os.path.getsize(picture) > 5000, "a picture from the server")
+
+    # Noise in the view: drawn by the server, and by the client from what the server delivers.
+    simple.Hide(noise, view)
+    display = simple.Show(wake, view)
+    simple.ResetCamera(view)
+    for threshold in (0.0, 1e6):
+        view.RemoteRenderThreshold = threshold
+        sizes = []
+        for representation in ("Surface", "Steerable Noise"):
+            display.SetRepresentationType(representation)
+            simple.Render(view)
+            simple.SaveScreenshot(picture, view)
+            sizes.append(os.path.getsize(picture))
+        pt.check(sizes[1] > 1.5 * sizes[0], "streaks in the view at threshold %g: %s" % (threshold, sizes))
     simple.Disconnect()
 finally:
     server.kill()

@@ -16,6 +16,11 @@ rank, ranks = controller.GetLocalProcessId(), controller.GetNumberOfProcesses()
 
 def sources():
     yield "wavelet", simple.Wavelet(WholeExtent=[-12, 12, -9, 9, -7, 8]), "Gradient"
+    # A fill value in a corner that one of the ranks has, and strength by the longest of the others.
+    missing = "if(coordsX > 5 & coordsY > 3, -9999, 0.01 * coordsY)"
+    yield "fill", simple.Calculator(
+        Input=simple.Wavelet(WholeExtent=[-12, 12, -9, 9, -7, 8]), ResultArrayName="Gradient",
+        Function="iHat * %s + jHat * 0.01 * (1 + coordsX)" % missing), "Fill"
     yield "wake", simple.OpenDataFile(pt.WAKE), None
     shared = lambda name: os.path.join(pt.SHARED, name)
     if os.path.exists(shared("disk_out_ref.ex2")):
@@ -57,6 +62,8 @@ for name, source, preparation in sources():
     if preparation == "Gradient":
         source = simple.Gradient(Input=source, ScalarArray=["POINTS", "RTData"])
         vectors = ["POINTS", "Gradient"]
+    elif preparation == "Fill":
+        vectors = ["POINTS", "Gradient"]
     elif preparation == "Ghosts":
         # Renamed after 5.11.
         ghosts = getattr(simple, "GhostCells", None) or simple.GhostCellsGenerator
@@ -69,8 +76,14 @@ for name, source, preparation in sources():
         vectors = ["POINTS", "Momentum"]
     for curvature in (0, 1):
         noise = simple.SteerableNoise(
-            Input=source, SelectInputVectors=vectors, FollowCurvature=curvature)
+            Input=source, SelectInputVectors=vectors, FollowCurvature=curvature,
+            StrengthMode="Magnitude" if name == "fill" else "Constant")
         simple.UpdatePipeline(proxy=noise)
         save("%s_%d" % (name, curvature), noise)
+        if name == "fill":
+            data = noise.GetClientSideObject().GetOutput()
+            places = numpy.array([data.GetPoint(i) for i in range(data.GetNumberOfPoints())])
+            missing = (places[:, 0] > 5) & (places[:, 1] > 3)
+            assert ((pt.array(data) == 0) == missing).all(), "fill values give 0 on rank %d" % rank
 
 print("rank %d of %d done" % (rank, ranks))

@@ -21,13 +21,14 @@ if frames < 2:
 if "STEERABLENOISE_PLUGIN" in os.environ:
     LoadPlugin(os.environ["STEERABLENOISE_PLUGIN"], remote=False, ns=globals())
 
-# One loop lasts from time 0 to TimePeriod. Steady data have no time: the filter offers that range.
+# One loop lasts from time 0 to TimePeriod. Steady data have no time: the filter offers that range. A frame is one unit
+# of time: ParaView 5.13 leaves out the last frame where the steps between frames are not exact.
 reader = OpenDataFile(data)
 reader.UpdatePipeline()
 if len(getattr(reader, "TimestepValues", None) or []) > 1:
     sys.exit("%s has time steps of its own: animate those. This script is for steady data." % data)
 # The mask leaves out vectors that are 0, the inside of bodies for example.
-noise = SteerableNoise(Input=reader, TimePeriod=1.0, MaskThreshold=1e-30)
+noise = SteerableNoise(Input=reader, TimePeriod=frames, MaskThreshold=1e-30)
 information = reader.GetDataInformation()
 image = information.GetDataSetTypeAsString() == "vtkImageData"
 bounds = information.GetBounds()
@@ -65,7 +66,7 @@ scene.UpdateAnimationUsingDataTimeSteps()
 scene.PlayMode = "Sequence"
 scene.NumberOfFrames = frames
 scene.StartTime = 0.0
-scene.EndTime = 1.0 - 1.0 / frames
+scene.EndTime = frames - 1
 os.makedirs(folder, exist_ok=True)
 # ParaView numbers them: frame.0000.png. (How a format for that is written differs from version to version.)
 path = os.path.join(folder, "frame.png")

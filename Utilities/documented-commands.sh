@@ -9,5 +9,5 @@ trap 'rm -f "$script"' EXIT
 python3 Utilities/documented-commands.py "$@" >"$script"
 bash -ux "$script" </dev/null
 # What was drawn.
-[ "$(ls frames | wc -l)" = 24 ]
+[ "$(ls frames | wc -l)" = 24 ] || { echo "frames: $(ls frames | wc -l) pictures, not 24"; exit 1; }
 pvpython Utilities/check-pictures.py wake.png frames/*.png

@@ -22,7 +22,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <memory>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -230,8 +229,10 @@ void CheckMemory(const std::vector<vtkImageData*>& images, int factor)
   bool fits = bytes < double(std::numeric_limits<std::ptrdiff_t>::max());
   if (fits)
   {
-    const std::unique_ptr<char[]> room(new (std::nothrow) char[static_cast<std::size_t>(bytes)]);
+    // The functions, not an expression with new: compilers may leave out such a one and its delete, as g++ 16 does.
+    void* room = ::operator new(static_cast<std::size_t>(bytes), std::nothrow);
     fits = room != nullptr;
+    ::operator delete(room);
   }
   if (!fits)
   {

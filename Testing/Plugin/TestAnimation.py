@@ -37,24 +37,24 @@ with tempfile.TemporaryDirectory() as folder:
         pt.check(difference > 3, "frame %d differs from the next one, mean %g" % (i, difference))
 
     # One period later the picture is the first one.
-    view.ViewTime = 1.0
+    view.ViewTime = FRAMES
     later = os.path.join(folder, "later.png")
     simple.SaveScreenshot(later, view)
     pt.check(abs(pixels(later) - frames[0]).max() <= 1, "after one period comes the first frame")
 
 filter_object = noise.GetClientSideObject()
 offered = filter_object.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_RANGE())
-pt.check(tuple(offered) == (0.0, 1.0), "the filter offers the range of one loop, got %s" % (offered,))
+pt.check(tuple(offered) == (0.0, FRAMES), "the filter offers the range of one loop, got %s" % (offered,))
 values = []
-for time in (0.0, 0.5, 1.0, 1.5):
-    simple.UpdatePipeline(time=time, proxy=noise)
+for periods in (0.0, 0.5, 1.0, 1.5):
+    simple.UpdatePipeline(time=periods * FRAMES, proxy=noise)
     values.append(pt.array(filter_object.GetOutput()))
 pt.check(abs(values[0] - values[2]).max() < 1e-3 and abs(values[1] - values[3]).max() < 1e-3, "the loop closes")
 pt.check(abs(values[0] - values[1]).max() > 0.5, "half a period is another picture")
 spread = [v.std() for v in values[:2]]
 pt.check(abs(spread[0] / spread[1] - 1.0) < 0.1, "contrast does not pulse: %s" % spread)
 # In the free stream, which flows to the right, the pattern moves to the right.
-simple.UpdatePipeline(time=0.01, proxy=noise)
+simple.UpdatePipeline(time=0.01 * FRAMES, proxy=noise)
 image = filter_object.GetOutput()
 columns, rows = image.GetDimensions()[0] - 1, image.GetDimensions()[1] - 1
 first, second = (v.reshape(rows, columns)[: rows // 6].astype(float) for v in (values[0], pt.array(image)))

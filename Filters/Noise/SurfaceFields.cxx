@@ -5,6 +5,7 @@
 #include "CellSums.h"
 #include "NoiseArrays.h"
 #include "NoiseGhosts.h"
+#include "NoiseLengths.h"
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
 
@@ -129,6 +130,13 @@ void MarkNotFinite(vtkFloatArray* array)
     SurfaceFields::NotFinite);
 }
 } // namespace
+
+double GetLongest(vtkDataArray* array)
+{
+  LengthOctaves lengths;
+  lengths.Add(array, {}, std::numeric_limits<double>::max());
+  return lengths.GetLongest(std::numeric_limits<double>::max());
+}
 
 SurfaceFields ComputeSurfaceFields(
   vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell)

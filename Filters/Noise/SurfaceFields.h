@@ -47,6 +47,9 @@ struct SurfaceFields
 STEERABLENOISEFILTERS_EXPORT SurfaceFields ComputeSurfaceFields(
   vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell);
 
+/// Length (Frobenius norm of tensors) of the longest finite tuple of 2, 3, 4, 6 or 9 components; 0 where there is none.
+STEERABLENOISEFILTERS_EXPORT double GetLongest(vtkDataArray* array);
+
 /**
  * The FeatureSize that vtkSteerableNoiseFilter takes by itself, in world units, for data with these bounds over all
  * blocks and ranks. `sampleSpacing`: how far apart samples are; 0 where noise does not depend on them.

@@ -120,7 +120,7 @@ int vtkSteerableNoiseRepresentation::RequestData(
     const vtkBoundingBox whole(all[0], -all[3], all[1], -all[4], all[2], -all[5]);
     for (vtkSteerableNoiseMapper* mapper : this->GetMappers())
     {
-      mapper->SetSharedExtremes(whole.IsValid() ? whole.GetDiagonalLength() : 0.0, -all[6]);
+      mapper->SetSharedExtremes(whole, -all[6]);
     }
   }
   return result;

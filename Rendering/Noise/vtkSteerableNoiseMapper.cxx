@@ -69,10 +69,10 @@ struct vtkSteerableNoiseMapper::Internals
   vtkTimeStamp UploadTime;
   std::map<vtkPolyData*, Block> Blocks;
   bool AnyNoise = false;
-  double OwnDiagonal = 0.0;
+  vtkBoundingBox OwnBounds;
   double OwnLongest = 0.0;
-  /// Over all ranks; 0: the mapper's own.
-  double SharedDiagonal = 0.0;
+  /// Over all ranks; invalid and 0: the mapper's own.
+  vtkBoundingBox SharedBounds;
   double SharedLongest = 0.0;
   /// Input and choice of the last warning that there is no array.
   vtkMTimeType WarningTime = 0;
@@ -87,10 +87,12 @@ struct vtkSteerableNoiseMapper::Internals
   void Resolve()
   {
     steerable::NoiseParameters& model = this->Options.Model;
-    const double diagonal = this->SharedDiagonal > 0.0 ? this->SharedDiagonal : this->OwnDiagonal;
+    const vtkBoundingBox& box = this->SharedBounds.IsValid() ? this->SharedBounds : this->OwnBounds;
+    double bounds[6];
+    box.GetBounds(bounds);
     const double longest = this->SharedLongest > 0.0 ? this->SharedLongest : this->OwnLongest;
     model.FeatureSize = this->Options.FeatureSize > 0.0 ? this->Options.FeatureSize
-      : diagonal > 0.0                                  ? 0.01 * diagonal
+      : box.IsValid()                                   ? noise::GetAutomaticFeatureSize(bounds)
                                                         : 1.0;
     model.ReferenceMagnitude = this->Options.ReferenceMagnitude > 0.0
       ? this->Options.ReferenceMagnitude
@@ -466,6 +468,7 @@ void vtkSteerableNoiseMapper::FindFields()
   std::map<vtkPolyData*, Internals::Block> blocks;
   noise::ShaderVariant variant;
   internals.AnyNoise = false;
+  bool changed = false;
   const vtkMTimeType chosen = std::max(
     this->GetInputArrayInformation(0)->GetMTime(), internals.PerCellTime.GetMTime());
   std::string why;
@@ -503,21 +506,21 @@ void vtkSteerableNoiseMapper::FindFields()
         block.Fields = noise::ComputeSurfaceFields(data, array, cells, perCell);
         block.PerCell = perCell;
         block.Time = time;
-        internals.FieldsTime.Modified();
+        changed = true;
       }
       variant.Tensors = tensors;
       variant.PerCell = perCell;
       internals.AnyNoise = true;
     });
-  if (blocks.size() < internals.Blocks.size())
+  changed |= blocks.size() < internals.Blocks.size();
+  internals.Blocks.swap(blocks);
+  if (changed)
   {
     internals.FieldsTime.Modified();
+    internals.OwnBounds.Reset();
+    internals.OwnLongest = 0.0;
+    this->AddExtremes(input, internals.OwnBounds, internals.OwnLongest);
   }
-  internals.Blocks.swap(blocks);
-  vtkBoundingBox bounds;
-  internals.OwnLongest = 0.0;
-  this->AddExtremes(input, bounds, internals.OwnLongest);
-  internals.OwnDiagonal = bounds.IsValid() ? bounds.GetDiagonalLength() : 0.0;
   if (variant.Tensors != internals.Variant.Tensors || variant.PerCell != internals.Variant.PerCell)
   {
     internals.Variant = variant;
@@ -650,16 +653,14 @@ void vtkSteerableNoiseMapper::AddExtremes(
       if (vtkDataArray* array =
             noise::FindSteeringArray(data, this->GetInputArrayInformation(0), cells, why))
       {
-        double range[2];
-        array->GetFiniteRange(range, -1); // as the filter has it
-        longest = std::max(longest, range[1]);
+        longest = std::max(longest, noise::GetLongest(array));
       }
     });
 }
 
-void vtkSteerableNoiseMapper::SetSharedExtremes(double diagonal, double longest)
+void vtkSteerableNoiseMapper::SetSharedExtremes(const vtkBoundingBox& bounds, double longest)
 {
-  this->Internal->SharedDiagonal = Clamp(diagonal, 0.0, VTK_DOUBLE_MAX);
+  this->Internal->SharedBounds = bounds;
   this->Internal->SharedLongest = Clamp(longest, 0.0, VTK_DOUBLE_MAX);
 }
 
@@ -733,7 +734,7 @@ void vtkSteerableNoiseMapper::ShallowCopy(vtkAbstractMapper* mapper)
   if (auto* other = vtkSteerableNoiseMapper::SafeDownCast(mapper))
   {
     this->Internal->Options = other->Internal->Options;
-    this->Internal->SharedDiagonal = other->Internal->SharedDiagonal;
+    this->Internal->SharedBounds = other->Internal->SharedBounds;
     this->Internal->SharedLongest = other->Internal->SharedLongest;
     VARIANT;
   }

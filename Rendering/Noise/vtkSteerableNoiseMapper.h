@@ -91,7 +91,8 @@ public:
   ///@}
 
   ///@{
-  /// Width of a streak in world units with WORLD; 0, the default: 1/100 of the diagonal of the bounds.
+  /// Width of a streak in world units with WORLD; 0, the default: the size that
+  /// the filter takes for fine samples, about 1/100 of the diagonal of the bounds.
   void SetFeatureSize(double size);
   double GetFeatureSize();
   ///@}
@@ -267,10 +268,10 @@ public:
   bool SetOptionsFrom(vtkSteerableNoiseFilter* filter);
 
   /**
-   * Diagonal of the bounds and length of the longest vector over all ranks, from which automatic values come; 0,
+   * Bounds and length of the longest vector over all ranks, from which automatic values come; invalid bounds and 0,
    * the default: the mapper's own input is all there is.
    */
-  void SetSharedExtremes(double diagonal, double longest);
+  void SetSharedExtremes(const vtkBoundingBox& bounds, double longest);
 
   /**
    * When the vertices, with their vectors, were last uploaded, of all windows; 0: never. Options leave it alone.

@@ -806,6 +806,32 @@ TEST(SteerableNoiseMapper, PanningMovesThePatternWithTheSurface)
   EXPECT_LT(largest, 0.01);
 }
 
+/// The longest tensor is that of the Frobenius norm, as the filter has it.
+TEST(SteerableNoiseMapper, StrengthByMagnitudeOfTensorsEqualsTheFilter)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.1);
+  EXPECT_LT(GetLargestDifference(sheet, "T",
+              [](vtkSteerableNoiseFilter* filter)
+              { filter->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE); }),
+    Tolerance);
+}
+
+/// The automatic size is the filter's where samples are fine.
+TEST(SteerableNoiseMapper, AutomaticWorldSizeIsTheFilters)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);
+  const auto look = [&](double size)
+  {
+    Scene scene(sheet);
+    scene.Mapper->SetFeatureSize(size);
+    scene.LookDown(114.0, 114.0, 100.0);
+    return scene.RenderNoise();
+  };
+  double bounds[6];
+  sheet->GetBounds(bounds);
+  EXPECT_EQ(look(0.0), look(noise::GetAutomaticFeatureSize(bounds)));
+}
+
 TEST(SteerableNoiseMapper, MovingMeshesAreDrawnWhereTheyAre)
 {
   const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);

@@ -15,6 +15,7 @@ run("${CMAKE_COMMAND}" -S "${CONSUMER}" -B "${SCRATCH}/consumer" -G Ninja
   "-DCMAKE_PREFIX_PATH=${prefix}" -DCMAKE_BUILD_TYPE=Release)
 run("${CMAKE_COMMAND}" --build "${SCRATCH}/consumer")
 run("${SCRATCH}/consumer/useSteerableNoise")
+run("${XVFB_RUN}" -a -s "-screen 0 1280x1024x24 -noreset" "${SCRATCH}/consumer/lookAtSteerableNoise")
 set(ENV{PYTHONPATH} "${prefix}/${LIBDIR}/python3/dist-packages")
 run("${PVPYTHON}" -c
   "from steerablenoise import vtkSteerableNoiseFilter, vtkSteerableNoiseMapper; print(vtkSteerableNoiseFilter().GetStreakLength(), vtkSteerableNoiseMapper().GetStreakLength())")

@@ -14,6 +14,7 @@
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkMath.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
@@ -30,8 +31,8 @@ namespace
 {
 constexpr float NaN = std::numeric_limits<float>::quiet_NaN();
 
-/// The array as floats of 3 or 6 components, divided by the longest; what is not finite becomes NaN.
-void SetSteering(SurfaceFields& fields, vtkDataArray* array)
+/// The array as floats of 3 or 6 components, divided by the longest; what is not finite or longer than `limit` becomes NaN.
+void SetSteering(SurfaceFields& fields, vtkDataArray* array, double limit)
 {
   const bool vectors = IsVector(array->GetNumberOfComponents());
   const int components = vectors ? 3 : 6;
@@ -55,9 +56,12 @@ void SetSteering(SurfaceFields& fields, vtkDataArray* array)
     }
     ReadLengths(fields.Steering, begin, size, lengths.data() + begin);
   }
+  // Lengths of floats, of which the longest that counts may be a little longer than it was.
+  const auto counts = [atMost = 1.000001 * limit](double length)
+  { return std::isfinite(length) && length <= atMost; };
   for (const double length : lengths)
   {
-    longest = std::isfinite(length) ? std::max(longest, length) : longest;
+    longest = counts(length) ? std::max(longest, length) : longest;
   }
   fields.Longest = longest > 0.0 ? longest : 1.0;
   for (std::size_t i = 0; i < lengths.size(); ++i)
@@ -66,7 +70,7 @@ void SetSteering(SurfaceFields& fields, vtkDataArray* array)
     for (int c = 0; c < components; ++c)
     {
       tuple[c] =
-        std::isfinite(lengths[i]) ? static_cast<float>(tuple[c] / fields.Longest) : NaN;
+        counts(lengths[i]) ? static_cast<float>(tuple[c] / fields.Longest) : NaN;
     }
   }
 }
@@ -131,15 +135,32 @@ void MarkNotFinite(vtkFloatArray* array)
 }
 } // namespace
 
-double GetLongest(vtkDataArray* array)
+LengthRange FindLengths(const std::vector<vtkDataArray*>& arrays, double upperThreshold,
+  vtkMultiProcessController* controller)
 {
+  LengthRange range;
+  range.Limit = upperThreshold > 0.0 ? upperThreshold : range.Limit;
   LengthOctaves lengths;
-  lengths.Add(array, {}, std::numeric_limits<double>::max());
-  return lengths.GetLongest(std::numeric_limits<double>::max());
+  for (vtkDataArray* array : arrays)
+  {
+    lengths.Add(array, {}, range.Limit);
+  }
+  if (controller && controller->GetNumberOfProcesses() > 1)
+  {
+    lengths.Reduce(controller);
+  }
+  const FarAbove farAbove = upperThreshold > 0.0 ? FarAbove() : lengths.FindFarAbove();
+  if (farAbove.Fill)
+  {
+    range.Limit = farAbove.Rest;
+    range.Fills = farAbove.Count;
+  }
+  range.Longest = lengths.GetLongest(range.Limit);
+  return range;
 }
 
 SurfaceFields ComputeSurfaceFields(
-  vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell)
+  vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell, double limit)
 {
   SurfaceFields fields;
   const int components = array->GetNumberOfComponents();
@@ -147,7 +168,7 @@ SurfaceFields ComputeSurfaceFields(
   {
     return fields;
   }
-  SetSteering(fields, array);
+  SetSteering(fields, array, limit);
   if (cells && !perCell)
   {
     fields.Steering = CellsToPoints(surface, fields.Steering);

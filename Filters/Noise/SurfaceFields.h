@@ -12,11 +12,14 @@
 #include "vtkFloatArray.h"
 #include "vtkSmartPointer.h"
 
+#include <limits>
 #include <string>
+#include <vector>
 
 class vtkDataArray;
 class vtkDataSet;
 class vtkInformation;
+class vtkMultiProcessController;
 class vtkPolyData;
 
 namespace noise
@@ -42,13 +45,30 @@ struct SurfaceFields
 /**
  * Fields at the points of a surface from an array on its points or, `cells`, on its cells: then the points
  * get means over their cells, hidden ones left out, unless `perCell` asks for the fields of the cells
- * themselves. An array with another number of components gives no Steering.
+ * themselves. Tuples longer than `limit` count as not finite. An array with another number of components gives
+ * no Steering.
  */
 STEERABLENOISEFILTERS_EXPORT SurfaceFields ComputeSurfaceFields(
-  vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell);
+  vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell,
+  double limit = std::numeric_limits<double>::infinity());
 
-/// Length (Frobenius norm of tensors) of the longest finite tuple of 2, 3, 4, 6 or 9 components; 0 where there is none.
-STEERABLENOISEFILTERS_EXPORT double GetLongest(vtkDataArray* array);
+/// How long the tuples of some arrays are (Frobenius norm of tensors).
+struct LengthRange
+{
+  /// Of those that count; 0 where there is none.
+  double Longest = 0.0;
+  /// Longer tuples do not count; infinite: all do.
+  double Limit = std::numeric_limits<double>::infinity();
+  /// Tuples that were taken for fill values, by the rule of vtkSteerableNoiseFilter.
+  double Fills = 0.0;
+};
+
+/**
+ * Of arrays with 2, 3, 4, 6 or 9 components, and of those of the other ranks of `controller`, which may be null.
+ * `upperThreshold`: the limit; 0: fill values are found and left out.
+ */
+STEERABLENOISEFILTERS_EXPORT LengthRange FindLengths(const std::vector<vtkDataArray*>& arrays,
+  double upperThreshold, vtkMultiProcessController* controller);
 
 /**
  * The FeatureSize that vtkSteerableNoiseFilter takes by itself, in world units, for data with these bounds over all

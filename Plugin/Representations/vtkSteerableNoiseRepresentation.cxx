@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSteerableNoiseRepresentation.h"
 
-#include "vtkBoundingBox.h"
-#include "vtkCommunicator.h"
 #include "vtkMapper.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
@@ -79,6 +77,16 @@ STEERABLENOISE_FORWARD(Animate, bool)
 STEERABLENOISE_FORWARD(VectorsPerCell, bool)
 STEERABLENOISE_FORWARD(UseMaskColor, bool)
 
+// All ranks look for fill values together, in RequestData.
+void vtkSteerableNoiseRepresentation::SetMaskUpperThreshold(double threshold)
+{
+  for (vtkSteerableNoiseMapper* mapper : this->GetMappers())
+  {
+    mapper->SetMaskUpperThreshold(threshold);
+  }
+  this->MarkModified();
+}
+
 // A mapper's own ColorMode is VTK's.
 void vtkSteerableNoiseRepresentation::SetColorMode(int mode)
 {
@@ -104,24 +112,10 @@ int vtkSteerableNoiseRepresentation::RequestData(
   vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
   if (controller && controller->GetNumberOfProcesses() > 1)
   {
-    vtkBoundingBox bounds;
-    double longest = 0.0;
-    this->GetMappers()[0]->AddExtremes(this->GeometryFilter->GetOutputDataObject(0), bounds, longest);
-    double low[3] = { 1e300, 1e300, 1e300 };
-    double high[3] = { -1e300, -1e300, -1e300 };
-    if (bounds.IsValid())
-    {
-      bounds.GetMinPoint(low[0], low[1], low[2]);
-      bounds.GetMaxPoint(high[0], high[1], high[2]);
-    }
-    const double mine[7] = { low[0], low[1], low[2], -high[0], -high[1], -high[2], -longest };
-    double all[7];
-    controller->AllReduce(mine, all, 7, vtkCommunicator::MIN_OP);
-    const vtkBoundingBox whole(all[0], -all[3], all[1], -all[4], all[2], -all[5]);
-    for (vtkSteerableNoiseMapper* mapper : this->GetMappers())
-    {
-      mapper->SetSharedExtremes(whole, -all[6]);
-    }
+    const auto mappers = this->GetMappers();
+    mappers[0]->ShareExtremes(this->GeometryFilter->GetOutputDataObject(0), controller);
+    std::for_each(mappers.begin() + 1, mappers.end(),
+      [&](vtkSteerableNoiseMapper* mapper) { mapper->ShareExtremes(mappers[0]); });
   }
   return result;
 }

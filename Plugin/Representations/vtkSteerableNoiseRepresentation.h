@@ -40,6 +40,7 @@ public:
   void SetStrength(double value);
   void SetReferenceMagnitude(double value);
   void SetMaskThreshold(double value);
+  void SetMaskUpperThreshold(double threshold);
   void SetDensity(double value);
   void SetPhase(double value);
   void SetSpeed(double value);

@@ -30,6 +30,7 @@ struct ShaderOptions
   /// As set; 0: automatic. Model has the values in use.
   double FeatureSize = 0.0;
   double ReferenceMagnitude = 0.0;
+  double MaskUpperThreshold = 0.0;
   double Phase = 0.0;
   bool Animate = false;
   double TimePeriod = 0.0;

@@ -15,6 +15,7 @@
 #include "vtkFloatArray.h"
 #include "vtkHardwareSelector.h" // vtkCompositeMapperHelper2.h wants it first
 #include "vtkInformation.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkOpenGLBufferObject.h"
@@ -58,22 +59,30 @@ struct vtkSteerableNoiseMapper::Internals
     noise::SurfaceFields Fields;
     bool PerCell = false;
     vtkMTimeType Time = 0;
+    double Limit = 0.0;
+  };
+
+  /// What automatic values come from.
+  struct Extremes
+  {
+    vtkBoundingBox Bounds;
+    noise::LengthRange Lengths;
   };
 
   noise::ShaderOptions Options;
   noise::ShaderVariant Variant;
   vtkTimeStamp VariantTime;
-  vtkTimeStamp PerCellTime;
+  vtkTimeStamp ChosenTime;
   /// When something that is uploaded changed.
   vtkTimeStamp FieldsTime;
   vtkTimeStamp UploadTime;
   std::map<vtkPolyData*, Block> Blocks;
   bool AnyNoise = false;
-  vtkBoundingBox OwnBounds;
-  double OwnLongest = 0.0;
-  /// Over all ranks; invalid and 0: the mapper's own.
-  vtkBoundingBox SharedBounds;
-  double SharedLongest = 0.0;
+  Extremes Own;
+  vtkMTimeType OwnTime = 0;
+  /// Over all ranks, where there are several.
+  Extremes Shared;
+  bool AreShared = false;
   /// Input and choice of the last warning that there is no array.
   vtkMTimeType WarningTime = 0;
 
@@ -83,14 +92,20 @@ struct vtkSteerableNoiseMapper::Internals
     return found != this->Blocks.end() && found->second.Fields.Steering ? &found->second : nullptr;
   }
 
+  /// Of `input`, and what the other ranks of a controller have.
+  Extremes FindExtremes(
+    vtkDataObject* input, vtkInformation* choice, vtkMultiProcessController* controller) const;
+
+  const Extremes& GetExtremes() const { return this->AreShared ? this->Shared : this->Own; }
+
   /// The kernel's parameters with automatic values filled in.
   void Resolve()
   {
     steerable::NoiseParameters& model = this->Options.Model;
-    const vtkBoundingBox& box = this->SharedBounds.IsValid() ? this->SharedBounds : this->OwnBounds;
+    const vtkBoundingBox& box = this->GetExtremes().Bounds;
     double bounds[6];
     box.GetBounds(bounds);
-    const double longest = this->SharedLongest > 0.0 ? this->SharedLongest : this->OwnLongest;
+    const double longest = this->GetExtremes().Lengths.Longest;
     model.FeatureSize = this->Options.FeatureSize > 0.0 ? this->Options.FeatureSize
       : box.IsValid()                                   ? noise::GetAutomaticFeatureSize(bounds)
                                                         : 1.0;
@@ -470,7 +485,21 @@ void vtkSteerableNoiseMapper::FindFields()
   internals.AnyNoise = false;
   bool changed = false;
   const vtkMTimeType chosen = std::max(
-    this->GetInputArrayInformation(0)->GetMTime(), internals.PerCellTime.GetMTime());
+    this->GetInputArrayInformation(0)->GetMTime(), internals.ChosenTime.GetMTime());
+  vtkMTimeType newest = chosen;
+  ForEachPolyData(input, [&](vtkPolyData* data) { newest = std::max(newest, data->GetMTime()); });
+  if (newest != internals.OwnTime)
+  {
+    internals.OwnTime = newest;
+    internals.Own = internals.FindExtremes(input, this->GetInputArrayInformation(0), nullptr);
+    if (internals.Own.Lengths.Fills > 0.0)
+    {
+      vtkWarningMacro(<< internals.Own.Lengths.Fills << " vectors are far longer than all others (up to "
+                      << internals.Own.Lengths.Limit << "), as values are that stand for missing ones: they "
+                      << "show no noise. MaskUpperThreshold sets the limit by hand; 1e300 takes all of them.");
+    }
+  }
+  const double limit = internals.GetExtremes().Lengths.Limit;
   std::string why;
   ForEachPolyData(input,
     [&](vtkPolyData* data)
@@ -497,15 +526,17 @@ void vtkSteerableNoiseMapper::FindFields()
       const vtkMTimeType time = std::max(data->GetMTime(), chosen);
       const auto known = internals.Blocks.find(data);
       Internals::Block& block = blocks[data];
-      if (known != internals.Blocks.end() && known->second.Time == time)
+      if (known != internals.Blocks.end() && known->second.Time == time &&
+        known->second.Limit == limit)
       {
         block = known->second;
       }
       else
       {
-        block.Fields = noise::ComputeSurfaceFields(data, array, cells, perCell);
+        block.Fields = noise::ComputeSurfaceFields(data, array, cells, perCell, limit);
         block.PerCell = perCell;
         block.Time = time;
+        block.Limit = limit;
         changed = true;
       }
       variant.Tensors = tensors;
@@ -517,9 +548,6 @@ void vtkSteerableNoiseMapper::FindFields()
   if (changed)
   {
     internals.FieldsTime.Modified();
-    internals.OwnBounds.Reset();
-    internals.OwnLongest = 0.0;
-    this->AddExtremes(input, internals.OwnBounds, internals.OwnLongest);
   }
   if (variant.Tensors != internals.Variant.Tensors || variant.PerCell != internals.Variant.PerCell)
   {
@@ -583,6 +611,8 @@ STEERABLENOISE_DRAWN(EigenvalueSum, Model.EigenvalueSum, 2.0, 16.0)
 STEERABLENOISE_DRAWN(Strength, Model.Strength, 0.0, 1.0)
 STEERABLENOISE_DRAWN(ReferenceMagnitude, ReferenceMagnitude, 0.0, VTK_DOUBLE_MAX)
 STEERABLENOISE_DRAWN(MaskThreshold, Model.MaskThreshold, 0.0, VTK_DOUBLE_MAX)
+STEERABLENOISE_OPTION(MaskUpperThreshold, double, MaskUpperThreshold,
+  Clamp(MaskUpperThreshold, 0.0, VTK_DOUBLE_MAX), this->Internal->ChosenTime.Modified())
 STEERABLENOISE_DRAWN(Density, Model.Density, 0.01, 1.0)
 STEERABLENOISE_DRAWN(Speed, Model.Speed, -4.0, 4.0)
 STEERABLENOISE_DRAWN(Lacunarity, Model.Lacunarity, 1.0, 8.0)
@@ -609,7 +639,7 @@ STEERABLENOISE_OPTION(NoiseColorMode, int, ColorMode, Clamp<int>(NoiseColorMode,
   VARIANT;
   this->Modified())
 STEERABLENOISE_OPTION(VectorsPerCell, bool, VectorsPerCell, VectorsPerCell,
-  this->Internal->PerCellTime.Modified())
+  this->Internal->ChosenTime.Modified())
 
 void vtkSteerableNoiseMapper::SetFeatureSizeMode(int mode)
 {
@@ -637,31 +667,50 @@ void vtkSteerableNoiseMapper::GetMaskColor(double color[3])
   std::copy_n(this->Internal->Options.MaskColor.begin(), 3, color);
 }
 
-void vtkSteerableNoiseMapper::AddExtremes(
-  vtkDataObject* input, vtkBoundingBox& bounds, double& longest)
+vtkSteerableNoiseMapper::Internals::Extremes vtkSteerableNoiseMapper::Internals::FindExtremes(
+  vtkDataObject* input, vtkInformation* choice, vtkMultiProcessController* controller) const
 {
+  Extremes extremes;
+  std::vector<vtkDataArray*> arrays;
   ForEachPolyData(input,
     [&](vtkPolyData* data)
     {
-      if (data->GetNumberOfPoints() == 0)
-      {
-        return;
-      }
-      bounds.AddBounds(data->GetBounds());
       bool cells = false;
       std::string why;
-      if (vtkDataArray* array =
-            noise::FindSteeringArray(data, this->GetInputArrayInformation(0), cells, why))
+      vtkDataArray* array = data->GetNumberOfPoints() > 0
+        ? noise::FindSteeringArray(data, choice, cells, why)
+        : nullptr;
+      if (data->GetNumberOfPoints() > 0)
       {
-        longest = std::max(longest, noise::GetLongest(array));
+        extremes.Bounds.AddBounds(data->GetBounds());
+      }
+      if (array)
+      {
+        arrays.push_back(array);
       }
     });
+  extremes.Lengths =
+    noise::FindLengths(arrays, this->Options.MaskUpperThreshold, controller);
+  if (controller)
+  {
+    vtkBoundingBox here = extremes.Bounds;
+    controller->AllReduce(here, extremes.Bounds);
+  }
+  return extremes;
 }
 
-void vtkSteerableNoiseMapper::SetSharedExtremes(const vtkBoundingBox& bounds, double longest)
+void vtkSteerableNoiseMapper::ShareExtremes(
+  vtkDataObject* data, vtkMultiProcessController* controller)
 {
-  this->Internal->SharedBounds = bounds;
-  this->Internal->SharedLongest = Clamp(longest, 0.0, VTK_DOUBLE_MAX);
+  this->Internal->Shared =
+    this->Internal->FindExtremes(data, this->GetInputArrayInformation(0), controller);
+  this->Internal->AreShared = true;
+}
+
+void vtkSteerableNoiseMapper::ShareExtremes(vtkSteerableNoiseMapper* other)
+{
+  this->Internal->Shared = other->Internal->Shared;
+  this->Internal->AreShared = other->Internal->AreShared;
 }
 
 vtkMTimeType vtkSteerableNoiseMapper::GetUploadTime()
@@ -704,6 +753,7 @@ bool vtkSteerableNoiseMapper::SetOptionsFrom(vtkSteerableNoiseFilter* filter)
   this->SetStrengthMode(filter->GetStrengthMode());
   this->SetReferenceMagnitude(filter->GetReferenceMagnitude());
   this->SetMaskThreshold(filter->GetMaskThreshold());
+  this->SetMaskUpperThreshold(filter->GetMaskUpperThreshold());
   this->SetFollowCurvature(filter->GetFollowCurvature());
   this->SetBasis(filter->GetBasis());
   this->SetDensity(filter->GetDensity());
@@ -734,8 +784,7 @@ void vtkSteerableNoiseMapper::ShallowCopy(vtkAbstractMapper* mapper)
   if (auto* other = vtkSteerableNoiseMapper::SafeDownCast(mapper))
   {
     this->Internal->Options = other->Internal->Options;
-    this->Internal->SharedBounds = other->Internal->SharedBounds;
-    this->Internal->SharedLongest = other->Internal->SharedLongest;
+    this->ShareExtremes(other);
     VARIANT;
   }
   this->Superclass::ShallowCopy(mapper);
@@ -753,6 +802,7 @@ void vtkSteerableNoiseMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "StrengthMode: " << this->GetStrengthMode() << "\n"
      << indent << "ReferenceMagnitude: " << this->GetReferenceMagnitude() << "\n"
      << indent << "MaskThreshold: " << this->GetMaskThreshold() << "\n"
+     << indent << "MaskUpperThreshold: " << this->GetMaskUpperThreshold() << "\n"
      << indent << "FollowCurvature: " << this->GetFollowCurvature() << "\n"
      << indent << "Basis: " << this->GetBasis() << "\n"
      << indent << "Density: " << this->GetDensity() << "\n"

@@ -41,7 +41,7 @@ using vtkSteerableNoiseMapperSuperclass = vtkCompositePolyDataMapper2;
 
 #include <memory> // For std::unique_ptr
 
-class vtkBoundingBox;
+class vtkMultiProcessController;
 class vtkSteerableNoiseFilter;
 
 class STEERABLENOISERENDERING_EXPORT vtkSteerableNoiseMapper
@@ -131,6 +131,15 @@ public:
   /// Vectors at or below this length show no noise; 0, the default: none but zero vectors.
   void SetMaskThreshold(double threshold);
   double GetMaskThreshold();
+  ///@}
+
+  ///@{
+  /**
+   * Vectors above this length show no noise and count for nothing; 0, the default: those that stand for missing
+   * values by the rule of vtkSteerableNoiseFilter. A change uploads anew.
+   */
+  void SetMaskUpperThreshold(double threshold);
+  double GetMaskUpperThreshold();
   ///@}
 
   ///@{
@@ -268,18 +277,17 @@ public:
   bool SetOptionsFrom(vtkSteerableNoiseFilter* filter);
 
   /**
-   * Bounds and length of the longest vector over all ranks, from which automatic values come; invalid bounds and 0,
-   * the default: the mapper's own input is all there is.
+   * Automatic values come from `data`, the part of the surface on this rank, and the parts of the other ranks of
+   * `controller`, which all call this. By default the mapper's own input is all there is.
    */
-  void SetSharedExtremes(const vtkBoundingBox& bounds, double longest);
+  void ShareExtremes(vtkDataObject* data, vtkMultiProcessController* controller);
+  /// Takes what another mapper shares.
+  void ShareExtremes(vtkSteerableNoiseMapper* other);
 
   /**
    * When the vertices, with their vectors, were last uploaded, of all windows; 0: never. Options leave it alone.
    */
   vtkMTimeType GetUploadTime();
-
-  /// Bounds of a dataset or composite, and the length of the longest vector that would steer it.
-  void AddExtremes(vtkDataObject* data, vtkBoundingBox& bounds, double& longest);
 
   void Render(vtkRenderer* renderer, vtkActor* actor) override;
 

@@ -110,7 +110,7 @@ options = dict(NoiseColorMode="Blend", NoiseIntensity=0.5, NoiseContrast=2.0, No
                NoiseStreakLength=3.0, NoiseEigenvalueSum=5.0, NoiseStrength=0.5, NoiseFollowCurvature=0,
                NoisePhase=0.4, NoiseSpeed=-2.0, NoiseOctaves=2, NoiseLacunarity=3.0, NoiseGain=0.9, NoiseSeed=5,
                NoiseStrengthMode="Magnitude", NoiseReferenceMagnitude=50.0, NoiseFeatureSizeMode="World",
-               NoiseFeatureSize=2.0, NoiseBasis="Streaks", NoiseDensity=1.0, NoiseMaskThreshold=6.0,
+               NoiseFeatureSize=2.0, NoiseBasis="Streaks", NoiseDensity=1.0, NoiseMaskThreshold=6.0, NoiseMaskUpperThreshold=15.0,
                NoiseUseMaskColor=1, NoiseMaskColor=[1.0, 0.0, 0.0], NoiseTimePeriod=3.0)
 for name, value in options.items():
     setattr(display, name, value)

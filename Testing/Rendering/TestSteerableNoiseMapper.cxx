@@ -816,6 +816,56 @@ TEST(SteerableNoiseMapper, StrengthByMagnitudeOfTensorsEqualsTheFilter)
     Tolerance);
 }
 
+/// Values that stand for missing ones show the surface, and do not set the strength of the others.
+TEST(SteerableNoiseMapper, FillValuesShowTheSurface)
+{
+  const auto sheet = MakeSheet({ 0.0, 0.0, 0.0 }, 0.0);
+  const auto look = [&](double upper)
+  {
+    Scene scene(sheet);
+    scene.Mapper->SetFeatureSize(12.0);
+    scene.Mapper->SetStrengthMode(vtkSteerableNoiseMapper::MAGNITUDE);
+    scene.Mapper->SetMaskUpperThreshold(upper);
+    scene.LookDown(114.0, 114.0, 228.0);
+    return scene.RenderNoise();
+  };
+  const auto whole = look(0.0);
+  for (vtkIdType i = 0; i < 5; ++i)
+  {
+    sheet->GetPointData()->GetVectors()->SetTuple3(i, -30000.0, -30000.0, -30000.0);
+  }
+  sheet->GetPointData()->GetVectors()->Modified();
+  sheet->Modified();
+  Messages messages;
+  const auto found = look(0.0);
+  EXPECT_NE(messages.Get().find("MaskUpperThreshold"), std::string::npos);
+  const auto byHand = look(100.0);
+  const auto all = look(1e300);
+  int missing = 0;
+  int different = 0;
+  int changed = 0;
+  for (int y = 40; y < Size; ++y) // beyond the cells with fill values
+  {
+    for (int x = 0; x < Size; ++x)
+    {
+      const std::size_t i = static_cast<std::size_t>(y) * Size + x;
+      different += std::abs(found[i] - whole[i]) > 0.01;
+      changed += std::abs(all[i] - whole[i]) > 0.1;
+    }
+  }
+  for (int x = 0; x < 40; ++x)
+  {
+    missing += std::isnan(found[static_cast<std::size_t>(5) * Size + x]);
+  }
+  EXPECT_EQ(missing, 40);
+  EXPECT_LT(different, 200);
+  EXPECT_GT(changed, 10000);
+  for (std::size_t i = 0; i < found.size(); ++i)
+  {
+    ASSERT_TRUE(found[i] == byHand[i] || (std::isnan(found[i]) && std::isnan(byHand[i]))) << i;
+  }
+}
+
 /// The automatic size is the filter's where samples are fine.
 TEST(SteerableNoiseMapper, AutomaticWorldSizeIsTheFilters)
 {

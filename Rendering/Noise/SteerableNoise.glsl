@@ -498,16 +498,15 @@ float NoiseOfFragment(vec3 place, vec3 steering, vec3 steering2, vec3 bend, vec3
   float level = log2(max(pixel * noiseFeature, 1e-30));
   float below = floor(level);
   float turn = 1.5707963 * smoothstep(0.33, 0.67, level - below);
+  // A loop ends where no fragment of a group goes on; a branch would cost all of them both lattices.
+  int first = turn < 1.5707 ? 0 : 1;
+  int last = turn > 0.0001 ? 1 : 0;
   float noise = 0.0;
-  for (int i = 0; i < 2; ++i)
+  for (int i = first; i <= last; ++i)
   {
-    float share = i == 0 ? cos(turn) : sin(turn);
-    if (share > 1e-4)
-    {
-      int l = int(below) + i;
-      noise += share *
-        SteerableNoise(place, exp2(float(l)), l, pixel, metric, curvature, normal);
-    }
+    int l = int(below) + i;
+    noise += (i == 0 ? cos(turn) : sin(turn)) *
+      SteerableNoise(place, exp2(float(l)), l, pixel, metric, curvature, normal);
   }
   return noise;
 #else

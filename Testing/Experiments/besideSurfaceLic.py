@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Frames of vtkSteerableNoiseMapper and of vtkSurfaceLICMapper, timed in one run with a moving camera; the table in
+Documentation/performance.md.
+
+pvpython besideSurfaceLic.py [WIDTH...]
+
+Needs the module steerablenoise on PYTHONPATH and a display at least as large as the widest picture. A plane and a
+sphere of 64 cells, LIC with 40 steps of a quarter pixel. Pixels is the mean over one octave of zoom, since some sizes
+take one lattice and others two. The last rows are the first frame of a million triangles.
+"""
+import resource
+import sys
+import time
+
+import numpy
+from steerablenoise import vtkSteerableNoiseMapper
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
+from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICMapper
+
+FRAMES = 7  # of each; the median counts
+VORTICES = ((130.0, 180.0, 100.0), (300.0, 330.0, -100.0), (420.0, 160.0, 83.0))
+
+
+def surface(source):
+    """The output of a source with the vectors of a wind and three vortices."""
+    source.Update()
+    data = source.GetOutput()
+    data.GetPointData().Initialize()
+    places = vtk_to_numpy(data.GetPoints().GetData()).astype(float)
+    vectors = numpy.zeros((len(places), 3), dtype=numpy.float32)
+    vectors[:, 0] = 1.0
+    for x, y, strength in VORTICES:
+        dx, dy = places[:, 0] - x, places[:, 1] - y
+        share = strength / (dx * dx + dy * dy + 400.0)
+        vectors[:, 0] -= share * dy
+        vectors[:, 1] += share * dx
+    array = numpy_to_vtk(vectors, deep=True)
+    array.SetName("V")
+    data.GetPointData().SetVectors(array)
+    return data
+
+
+def plane(cells):
+    source = vtkPlaneSource()
+    source.SetPoint1(512, 0, 0)
+    source.SetPoint2(0, 512, 0)
+    source.SetResolution(cells, cells)
+    return surface(source)
+
+
+def sphere():
+    source = vtkSphereSource()
+    source.SetThetaResolution(64)
+    source.SetPhiResolution(32)
+    source.SetRadius(250)
+    source.SetCenter(256, 256, 0)
+    return surface(source)
+
+
+def window_of(mapper, data, width):
+    mapper.SetInputDataObject(data)
+    mapper.ScalarVisibilityOff()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    renderer = vtkRenderer()
+    renderer.AddActor(actor)
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(0)
+    window.SetSize(width, width)
+    window.AddRenderer(renderer)
+    renderer.ResetCamera(data.GetBounds())
+    renderer.GetActiveCamera().Zoom(1.4)
+    return window, renderer
+
+
+def seconds(window):
+    """Of a frame: by the clock, and of the processor."""
+    usage = lambda: sum(resource.getrusage(resource.RUSAGE_SELF)[:2])
+    clock, processor = time.perf_counter(), usage()
+    window.Render()
+    window.WaitForCompletion()
+    return time.perf_counter() - clock, usage() - processor
+
+
+def frames(mapper, data, width, zoom=1.0):
+    window, renderer = window_of(mapper, data, width)
+    seconds(window)
+    times = []
+    for _ in range(FRAMES):
+        renderer.GetActiveCamera().Azimuth(0.01)
+        renderer.GetActiveCamera().Zoom(zoom)
+        times.append(seconds(window))
+    average = numpy.mean if zoom != 1.0 else numpy.median
+    return average(times, axis=0)
+
+
+def lic():
+    mapper = vtkSurfaceLICMapper()
+    mapper.SetInputArrayToProcess(0, 0, 0, 0, "V")
+    mapper.GetLICInterface().SetNumberOfSteps(40)
+    mapper.GetLICInterface().SetStepSize(0.25)
+    return mapper
+
+
+def noise(world):
+    mapper = vtkSteerableNoiseMapper()
+    if world:
+        mapper.SetFeatureSizeMode(mapper.WORLD)
+        mapper.SetFeatureSize(8.0)
+    return mapper
+
+
+for width in [int(word) for word in sys.argv[1:]] or [1000, 1600]:
+    for name, data in (("plane", plane(64)), ("sphere", sphere())):
+        base = frames(lic(), data, width)
+        print("%-6s %4d  Surface LIC %6.2f s, of the processor %6.2f" % (name, width, *base), flush=True)
+        for mode, mapper, zoom in (("World", noise(True), 1.0), ("Pixels", noise(False), 2.0 ** (1.0 / FRAMES))):
+            now = frames(mapper, data, width, zoom)
+            print("%-6s %4d  %-11s %6.3f s, of the processor %6.3f: LIC takes %.1f and %.1f times as long" % (
+                name, width, mode, *now, *(base / now)), flush=True)
+
+fine = plane(708)
+for name, mapper in (("Surface", vtkPolyDataMapper()), ("noise", noise(True))):
+    window, renderer = window_of(mapper, fine, 800)
+    print("first frame of %d quads as %s: %.2f s" % (fine.GetNumberOfCells(), name, seconds(window)[0]))

@@ -6,8 +6,8 @@ Documentation/performance.md.
 pvpython besideSurfaceLic.py [WIDTH...]
 
 Needs the module steerablenoise on PYTHONPATH and a display at least as large as the widest picture. A plane and a
-sphere of 64 cells, LIC with 40 steps of a quarter pixel. Pixels is the mean over one octave of zoom, since some sizes
-take one lattice and others two. The last rows are the first frame of a million triangles.
+sphere of 64 cells, LIC with 40 steps of a quarter pixel. Pixels is the mean over an octave of sizes about 6, since
+some take one lattice and others two. The last rows are the first frame of a million triangles.
 """
 import resource
 import sys
@@ -86,16 +86,17 @@ def seconds(window):
     return time.perf_counter() - clock, usage() - processor
 
 
-def frames(mapper, data, width, zoom=1.0):
+def frames(mapper, data, width, sizes=None):
+    """Median of frames, or mean over sizes in pixels."""
     window, renderer = window_of(mapper, data, width)
     seconds(window)
     times = []
-    for _ in range(FRAMES):
+    for frame in range(FRAMES):
         renderer.GetActiveCamera().Azimuth(0.01)
-        renderer.GetActiveCamera().Zoom(zoom)
+        if sizes:
+            mapper.SetFeaturePixels(sizes[frame])
         times.append(seconds(window))
-    average = numpy.mean if zoom != 1.0 else numpy.median
-    return average(times, axis=0)
+    return (numpy.mean if sizes else numpy.median)(times, axis=0)
 
 
 def lic():
@@ -118,8 +119,9 @@ for width in [int(word) for word in sys.argv[1:]] or [1000, 1600]:
     for name, data in (("plane", plane(64)), ("sphere", sphere())):
         base = frames(lic(), data, width)
         print("%-6s %4d  Surface LIC %6.2f s, of the processor %6.2f" % (name, width, *base), flush=True)
-        for mode, mapper, zoom in (("World", noise(True), 1.0), ("Pixels", noise(False), 2.0 ** (1.0 / FRAMES))):
-            now = frames(mapper, data, width, zoom)
+        octave = [6.0 * 2.0 ** ((frame + 0.5) / FRAMES - 0.5) for frame in range(FRAMES)]
+        for mode, mapper, sizes in (("World", noise(True), None), ("Pixels", noise(False), octave)):
+            now = frames(mapper, data, width, sizes)
             print("%-6s %4d  %-11s %6.3f s, of the processor %6.3f: LIC takes %.1f and %.1f times as long" % (
                 name, width, mode, *now, *(base / now)), flush=True)
 

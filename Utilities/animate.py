@@ -27,8 +27,8 @@ reader = OpenDataFile(data)
 reader.UpdatePipeline()
 if len(getattr(reader, "TimestepValues", None) or []) > 1:
     sys.exit("%s has time steps of its own: animate those. This script is for steady data." % data)
-# The mask leaves out vectors that are 0, the inside of bodies for example.
-noise = SteerableNoise(Input=reader, TimePeriod=frames, MaskThreshold=1e-30)
+# Vectors that are 0, the inside of bodies for example, are blank.
+noise = SteerableNoise(Input=reader, TimePeriod=frames)
 information = reader.GetDataInformation()
 image = information.GetDataSetTypeAsString() == "vtkImageData"
 bounds = information.GetBounds()

@@ -15,7 +15,8 @@
  * get 3D noise whose metric lies in the surface. The blocks of a composite agree on it over all ranks: flat images
  * next to other data are surfaces, and structured grids one cell thick are surfaces only where no volume is. Turned images use lattices along their own axes.
  *
- * Vectors without a direction (zero, NaN, infinite) get isotropic noise and are counted in one warning.
+ * Vectors that are zero, NaN or infinite are blank (BlankValue); if more than half of the samples have no direction, a
+ * warning says so. Vectors along the normal of a surface get isotropic noise.
  * A missing array is an error in a plain dataset; a block of a composite without it is passed on and
  * counted. Automatic values and the plane of two components are agreed on by all ranks of the
  * Controller, which all have to take part.
@@ -79,6 +80,12 @@ public:
   {
     UNIFORM = 0,
     PERLIN = 1
+  };
+  enum BlankValueType
+  {
+    BLANK_ZERO = 0,
+    BLANK_NAN = 1,
+    BLANK_HIDDEN = 2
   };
 
   ///@{
@@ -315,6 +322,15 @@ public:
   ///@}
 
   ///@{
+  /**
+   * What the result is where vectors are zero, NaN or infinite, or beyond one of the thresholds: BLANK_ZERO, the default,
+   * BLANK_NAN, or BLANK_HIDDEN: 0, and the point or cell is hidden by vtkGhostType.
+   */
+  vtkSetClampMacro(BlankValue, int, BLANK_ZERO, BLANK_HIDDEN);
+  vtkGetMacro(BlankValue, int);
+  ///@}
+
+  ///@{
   /// Another seed, another noise; default 0.
   vtkSetMacro(Seed, int);
   vtkGetMacro(Seed, int);
@@ -387,6 +403,7 @@ protected:
   int Magnification = 1;
   double MaskThreshold = 0.0;
   double MaskUpperThreshold = 0.0;
+  int BlankValue = BLANK_ZERO;
   int Seed = 0;
   char* ResultArrayName = nullptr;
   bool OutputMetric = false;

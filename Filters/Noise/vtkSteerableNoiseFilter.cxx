@@ -567,8 +567,14 @@ int vtkSteerableNoiseFilter::RequestInformation(
   double only = 0.0;
   if (this->TimePeriod > 0.0 && IsSteady(inInfo, only))
   {
-    const double range[2] = { only, only + this->TimePeriod };
-    outInfo->Remove(SDDP::TIME_STEPS());
+    // The period's end is its start again: with it, a film that loops would stand still for a frame.
+    std::vector<double> steps(static_cast<std::size_t>(this->TimeSteps));
+    for (std::size_t i = 0; i < steps.size(); ++i)
+    {
+      steps[i] = only + this->TimePeriod * static_cast<double>(i) / static_cast<double>(steps.size());
+    }
+    const double range[2] = { only, steps.back() };
+    outInfo->Set(SDDP::TIME_STEPS(), steps.data(), this->TimeSteps);
     outInfo->Set(SDDP::TIME_RANGE(), range, 2);
   }
   else if (!inInfo->Has(SDDP::TIME_RANGE()))
@@ -858,6 +864,7 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Animate: " << this->Animate << "\n";
   os << indent << "Speed: " << this->Speed << "\n";
   os << indent << "TimePeriod: " << this->TimePeriod << "\n";
+  os << indent << "TimeSteps: " << this->TimeSteps << "\n";
   os << indent << "Octaves: " << this->Octaves << "\n";
   os << indent << "Lacunarity: " << this->Lacunarity << "\n";
   os << indent << "Gain: " << this->Gain << "\n";

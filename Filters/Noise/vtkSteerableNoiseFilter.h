@@ -229,11 +229,17 @@ public:
   ///@{
   /**
    * Pipeline time of one loop; time / TimePeriod is added to Phase. 0, the default: time does not
-   * matter. With it, an input without time steps becomes animated over the range 0 to TimePeriod, and one
-   * with a single time over one TimePeriod from there.
+   * matter. With it, an input without time steps gets TimeSteps of them, from 0 to one step before TimePeriod, and one
+   * with a single time the same from there.
    */
   vtkSetClampMacro(TimePeriod, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimePeriod, double);
+  ///@}
+
+  ///@{
+  /// Time steps that TimePeriod gives to steady data, 2 to 1000, default 24: the frames of a film that loops.
+  vtkSetClampMacro(TimeSteps, int, 2, 1000);
+  vtkGetMacro(TimeSteps, int);
   ///@}
 
   ///@{
@@ -391,6 +397,7 @@ protected:
   bool Animate = false;
   double Speed = 1.0;
   double TimePeriod = 0.0;
+  int TimeSteps = 24;
   int Octaves = 1;
   double Lacunarity = 2.0;
   double Gain = 0.5;

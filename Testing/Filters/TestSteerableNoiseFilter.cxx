@@ -629,8 +629,17 @@ TEST(SteerableNoiseFilter, TimeMovesASteadyFlow)
   vtkInformation* info = filter->GetOutputInformation(0);
   using SDDP = vtkStreamingDemandDrivenPipeline;
   ASSERT_TRUE(info->Has(SDDP::TIME_RANGE()));
-  EXPECT_EQ(info->Get(SDDP::TIME_RANGE())[1], 2.0);
-  EXPECT_FALSE(info->Has(SDDP::TIME_STEPS()));
+  // The end of the period is its start: it is not offered again.
+  ASSERT_EQ(info->Length(SDDP::TIME_STEPS()), 24);
+  EXPECT_EQ(info->Get(SDDP::TIME_STEPS(), 0), 0.0);
+  EXPECT_EQ(info->Get(SDDP::TIME_STEPS(), 6), 0.5);
+  EXPECT_EQ(info->Get(SDDP::TIME_STEPS(), 23), 2.0 * 23.0 / 24.0);
+  EXPECT_EQ(info->Get(SDDP::TIME_RANGE())[0], 0.0);
+  EXPECT_EQ(info->Get(SDDP::TIME_RANGE())[1], info->Get(SDDP::TIME_STEPS(), 23));
+  filter->SetTimeSteps(4);
+  filter->UpdateInformation();
+  ASSERT_EQ(info->Length(SDDP::TIME_STEPS()), 4);
+  EXPECT_EQ(info->Get(SDDP::TIME_STEPS(), 3), 1.5);
   const auto at = [&](double time)
   {
     filter->UpdateTimeStep(time);
@@ -659,6 +668,7 @@ TEST(SteerableNoiseFilter, ASingleTimeIsSteady)
   filter->SetInputConnection(producer->GetOutputPort());
   filter->SetFeatureSize(5.0);
   filter->SetTimePeriod(2.0);
+  filter->SetTimeSteps(8);
   const auto offer = [&](const std::vector<double>& steps, const std::vector<double>& range)
   {
     producer->UpdateInformation();
@@ -679,15 +689,16 @@ TEST(SteerableNoiseFilter, ASingleTimeIsSteady)
     return std::vector<double>{ out->Get(SDDP::TIME_RANGE())[0], out->Get(SDDP::TIME_RANGE())[1] };
   };
   using Range = std::vector<double>;
-  EXPECT_EQ(offer({ 313.0 }, { 313.0, 313.0 }), Range({ 313.0, 315.0 }));
-  EXPECT_FALSE(filter->GetOutputInformation(0)->Has(SDDP::TIME_STEPS()));
+  EXPECT_EQ(offer({ 313.0 }, { 313.0, 313.0 }), Range({ 313.0, 314.75 }));
+  EXPECT_EQ(filter->GetOutputInformation(0)->Length(SDDP::TIME_STEPS()), 8);
+  EXPECT_EQ(filter->GetOutputInformation(0)->Get(SDDP::TIME_STEPS(), 1), 313.25);
   filter->UpdateTimeStep(313.0);
   const std::vector<float> start = Values(filter->GetOutputDataObject(0));
   filter->UpdateTimeStep(313.5);
   EXPECT_NE(Values(filter->GetOutputDataObject(0)), start);
-  EXPECT_EQ(offer({ 313.0 }, {}), Range({ 313.0, 315.0 }));
-  EXPECT_EQ(offer({}, { 7.0, 7.0 }), Range({ 7.0, 9.0 }));
-  EXPECT_EQ(offer({}, {}), Range({ 0.0, 2.0 }));
+  EXPECT_EQ(offer({ 313.0 }, {}), Range({ 313.0, 314.75 }));
+  EXPECT_EQ(offer({}, { 7.0, 7.0 }), Range({ 7.0, 8.75 }));
+  EXPECT_EQ(offer({}, {}), Range({ 0.0, 1.75 }));
   // Data with times of their own keep them.
   EXPECT_EQ(offer({ 1.0, 4.0 }, { 1.0, 4.0 }), Range({ 1.0, 4.0 }));
   EXPECT_EQ(filter->GetOutputInformation(0)->Length(SDDP::TIME_STEPS()), 2);
@@ -970,7 +981,7 @@ TEST(SteerableNoiseFilter, EveryPropertyIsPrinted)
   filter->Print(text);
   for (const char* name : { "FeatureSize", "StreakLength", "Quality", "MinimumEigenvalue", "EigenvalueSum",
          "LatticeWindow", "Strength", "StrengthMode", "ReferenceMagnitude", "Normalization",
-         "FollowCurvature", "Basis", "Density", "Phase", "Animate", "Speed", "TimePeriod",
+         "FollowCurvature", "Basis", "Density", "Phase", "Animate", "Speed", "TimePeriod", "TimeSteps",
          "Octaves", "Lacunarity", "Gain", "Turbulence", "Fade", "Falloff", "Lattice", "GradientSet",
          "Period", "Magnification", "MaskThreshold", "MaskUpperThreshold", "BlankValue", "Seed", "ResultArrayName", "OutputMetric" })
   {

@@ -429,9 +429,9 @@ struct vtkSteerableNoiseFilter::Internals
         for (vtkIdType i = begin; i < end; ++i)
         {
           const bool tooLong = !leftOut.empty() && leftOut[i] == noise::Samples::IsTooLong;
-          // The kernel gives exactly 0 where the flow is stagnant, and elsewhere only in the gaps of streaks.
+          // The kernel gives exactly 0 where the flow is stagnant, but not only there: noise has zeros, streaks gaps.
           double length = 0.0;
-          if (this->Self->Basis == STREAKS)
+          if (threshold > 0.0 && values[i] == 0.0f)
           {
             noise::ReadLengths(block.Array, static_cast<std::size_t>(i), 1, &length);
           }

@@ -132,7 +132,7 @@ def run(title, source, array, warnings="", vectors=None, blank=None, **propertie
         squares += (values.astype(float) ** 2).sum()
         count += samples
         shown += (values != 0.0).sum()
-        steering = pt.array(b, array[1])
+        steering = pt.array(b, array[1]).reshape(samples, -1)
         zero = (steering == 0.0).all(axis=1)
         zeros += zero.sum()
         pt.check(bool((values[zero] == 0.0).all()), "%s: zeros are blank" % title)

@@ -21,14 +21,14 @@ if frames < 2:
 if "STEERABLENOISE_PLUGIN" in os.environ:
     LoadPlugin(os.environ["STEERABLENOISE_PLUGIN"], remote=False, ns=globals())
 
-# One loop lasts from time 0 to TimePeriod. Steady data have no time: the filter offers that range. A frame is one unit
-# of time: ParaView 5.13 leaves out the last frame where the steps between frames are not exact.
+# Steady data have no time: with TimePeriod the filter offers time steps, one for each frame, and the loop closes after
+# the last one. ParaView's animation takes them by itself.
 reader = OpenDataFile(data)
 reader.UpdatePipeline()
 if len(getattr(reader, "TimestepValues", None) or []) > 1:
     sys.exit("%s has time steps of its own: animate those. This script is for steady data." % data)
-# The mask leaves out vectors that are 0, the inside of bodies for example.
-noise = SteerableNoise(Input=reader, TimePeriod=frames, MaskThreshold=1e-30)
+# Vectors that are 0, the inside of bodies for example, are blank.
+noise = SteerableNoise(Input=reader, TimePeriod=frames, TimeSteps=frames)
 information = reader.GetDataInformation()
 image = information.GetDataSetTypeAsString() == "vtkImageData"
 bounds = information.GetBounds()
@@ -60,15 +60,9 @@ if flat:
     # The data fill the picture.
     view.CameraParallelScale = sides[1] / 2.0
 
-# The loop without its last moment, which is its first one again.
-scene = GetAnimationScene()
-scene.UpdateAnimationUsingDataTimeSteps()
-scene.PlayMode = "Sequence"
-scene.NumberOfFrames = frames
-scene.StartTime = 0.0
-scene.EndTime = frames - 1
+GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
 os.makedirs(folder, exist_ok=True)
 # ParaView numbers them: frame.0000.png. (How a format for that is written differs from version to version.)
 path = os.path.join(folder, "frame.png")
-SaveAnimation(path, view, FrameWindow=[0, frames - 1])
+SaveAnimation(path, view)
 print("%d frames: %s" % (frames, os.path.join(folder, "frame.0000.png")))

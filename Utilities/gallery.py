@@ -153,7 +153,7 @@ options("streaks", [
     low=0.0, high=4.0)
 options("strength", [("Strength %g" % strength, dict(Strength=strength)) for strength in (0.3, 0.6, 0.9)] + [
     ("Strength 1, StrengthMode Magnitude", dict(StrengthMode="Magnitude"))])
-options("mask_threshold", [("MaskThreshold 0: isotropic noise in the cylinder", {}),
+options("mask_threshold", [("MaskThreshold 0: only the cylinder is blank", {}),
     ("MaskThreshold 0.3: slow flow is blank", dict(MaskThreshold=0.3))])
 options("normalization", [
     ("Normalization Unit Variance", dict(PAPER, Quality=1)), ("Normalization Weight Sum", dict(PAPER, Quality=1, Normalization="Weight Sum")),

@@ -162,6 +162,17 @@ constexpr const char* HyperTreeGridMessage =
   "A HyperTreeGrid has no points or cells of its own. Apply Hyper Tree Grid To Unstructured Grid "
   "(vtkHyperTreeGridToUnstructuredGrid) first, or Resample To Image.";
 
+/// Not all zeros, and every component finite.
+bool HasValue(vtkDataArray* array, vtkIdType i)
+{
+  double tuple[9];
+  array->GetTuple(i, tuple);
+  const double* const first = tuple;
+  const double* const end = tuple + array->GetNumberOfComponents();
+  return std::all_of(first, end, [](double value) { return std::isfinite(value); }) &&
+    std::any_of(first, end, [](double value) { return value != 0.0; });
+}
+
 /// Degenerate samples are counted by the kernel with the ghosts; these are the duplicates among them.
 vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned char>& leftOut)
 {
@@ -172,21 +183,31 @@ vtkIdType CountDegenerateGhosts(const Block& block, const std::vector<unsigned c
     return 0;
   }
   vtkIdType count = 0;
-  double tuple[9];
   for (vtkIdType i = 0; i < ghosts->GetNumberOfTuples(); ++i)
   {
-    if (ghosts->GetValue(i) && (leftOut.empty() || !leftOut[i]))
-    {
-      block.Array->GetTuple(i, tuple);
-      double length = 0.0;
-      for (int c = 0; c < block.Array->GetNumberOfComponents(); ++c)
-      {
-        length += std::abs(tuple[c]);
-      }
-      count += !(std::isfinite(length) && length > 0.0);
-    }
+    count += ghosts->GetValue(i) && (leftOut.empty() || !leftOut[i]) && !HasValue(block.Array, i);
   }
   return count;
+}
+
+/// vtkGhostType of the samples, of which the output has a copy of its own from here on.
+vtkSmartPointer<vtkUnsignedCharArray> OwnGhosts(const Block& block)
+{
+  vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
+  const vtkIdType count = block.Array->GetNumberOfTuples();
+  auto own = vtkSmartPointer<vtkUnsignedCharArray>::New();
+  if (vtkUnsignedCharArray* ghosts = noise::GetGhosts(attributes, count))
+  {
+    own->DeepCopy(ghosts);
+  }
+  else
+  {
+    own->SetNumberOfTuples(count);
+    own->Fill(0);
+  }
+  own->SetName(vtkDataSetAttributes::GhostArrayName());
+  attributes->AddArray(own);
+  return own;
 }
 
 /// How long the vectors of all blocks and ranks are, and which of them are left out.
@@ -351,6 +372,7 @@ struct vtkSteerableNoiseFilter::Internals
       return; // half an array is none
     }
     this->Samples += samples.GetNumberOfSamples();
+    const bool anyDegenerate = counts.Degenerate > 0;
     // What is left out has no direction; with a mask it is stagnant.
     const std::vector<unsigned char>& leftOut = samples.GetLeftOut();
     const auto leave = [](std::uint64_t& count, std::uint64_t out)
@@ -362,13 +384,12 @@ struct vtkSteerableNoiseFilter::Internals
       leave(counts.Degenerate, CountDegenerateGhosts(block, leftOut));
     }
     this->Counts += counts;
-    for (std::size_t i = 0; i < leftOut.size(); ++i)
+    const vtkIdType tooLong =
+      std::count(leftOut.begin(), leftOut.end(), noise::Samples::IsTooLong);
+    this->TooLong += tooLong;
+    if (anyDegenerate || counts.Stagnant > 0 || tooLong > 0)
     {
-      if (leftOut[i] == noise::Samples::IsTooLong)
-      {
-        values[i] = 0.0f;
-        ++this->TooLong;
-      }
+      this->Blank(block, leftOut, parameters.MaskThreshold, values);
     }
 
     vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
@@ -384,6 +405,48 @@ struct vtkSteerableNoiseFilter::Internals
     }
     attributes->AddArray(result);
     attributes->SetActiveScalars(this->Self->ResultArrayName);
+  }
+
+  /**
+   * Gives BlankValue to the samples whose vector is zero, has no value, is at most `threshold` long or is too
+   * long. Those along the normal of a surface have a value and keep their noise.
+   */
+  void Blank(const Block& block, const std::vector<unsigned char>& leftOut, double threshold,
+    float* values) const
+  {
+    const int mode = this->Self->BlankValue;
+    const float blank = mode == BLANK_NAN ? std::numeric_limits<float>::quiet_NaN() : 0.0f;
+    vtkSmartPointer<vtkUnsignedCharArray> ghosts;
+    if (mode == BLANK_HIDDEN)
+    {
+      ghosts = OwnGhosts(block);
+    }
+    const unsigned char flag =
+      block.Cells ? +vtkDataSetAttributes::HIDDENCELL : +vtkDataSetAttributes::HIDDENPOINT;
+    vtkSMPTools::For(0, block.Array->GetNumberOfTuples(), 4096,
+      [&](vtkIdType begin, vtkIdType end)
+      {
+        for (vtkIdType i = begin; i < end; ++i)
+        {
+          const bool tooLong = !leftOut.empty() && leftOut[i] == noise::Samples::IsTooLong;
+          // The kernel gives exactly 0 where the flow is stagnant, but not only there: noise has zeros, streaks gaps.
+          double length = 0.0;
+          if (threshold > 0.0 && values[i] == 0.0f)
+          {
+            noise::ReadLengths(block.Array, static_cast<std::size_t>(i), 1, &length);
+          }
+          const bool stagnant =
+            threshold > 0.0 && values[i] == 0.0f && static_cast<float>(length) <= 1.000001f * threshold;
+          if (tooLong || stagnant || !HasValue(block.Array, i))
+          {
+            values[i] = blank;
+            if (ghosts)
+            {
+              ghosts->SetValue(i, ghosts->GetValue(i) | flag);
+            }
+          }
+        }
+      });
   }
 
   void Report(const Extremes& extremes, const Lengths& lengths, const steerable::NoiseParameters& parameters, bool composite)
@@ -407,12 +470,13 @@ struct vtkSteerableNoiseFilter::Internals
               << ". If they stand for missing values, set MaskUpperThreshold "
               << 2.0 * farAbove.Rest << ".";
     }
-    if (this->Counts.Degenerate > 0)
+    // Every wall and body has a few; most of the data are a mistake.
+    if (2 * this->Counts.Degenerate > static_cast<std::uint64_t>(this->Samples))
     {
       message << "\n"
               << this->Counts.Degenerate << " of " << this->Samples
-              << " samples have no direction (zero, NaN or infinite) and got isotropic noise; "
-                 "MaskThreshold blanks stagnant flow.";
+              << " samples have no direction (zero, NaN, infinite or along the surface's normal). "
+                 "Check that the right array is chosen.";
     }
     if (composite && this->BlocksWithout > 0)
     {
@@ -503,8 +567,14 @@ int vtkSteerableNoiseFilter::RequestInformation(
   double only = 0.0;
   if (this->TimePeriod > 0.0 && IsSteady(inInfo, only))
   {
-    const double range[2] = { only, only + this->TimePeriod };
-    outInfo->Remove(SDDP::TIME_STEPS());
+    // The period's end is its start again: with it, a film that loops would stand still for a frame.
+    std::vector<double> steps(static_cast<std::size_t>(this->TimeSteps));
+    for (std::size_t i = 0; i < steps.size(); ++i)
+    {
+      steps[i] = only + this->TimePeriod * static_cast<double>(i) / static_cast<double>(steps.size());
+    }
+    const double range[2] = { only, steps.back() };
+    outInfo->Set(SDDP::TIME_STEPS(), steps.data(), this->TimeSteps);
     outInfo->Set(SDDP::TIME_RANGE(), range, 2);
   }
   else if (!inInfo->Has(SDDP::TIME_RANGE()))
@@ -794,6 +864,7 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Animate: " << this->Animate << "\n";
   os << indent << "Speed: " << this->Speed << "\n";
   os << indent << "TimePeriod: " << this->TimePeriod << "\n";
+  os << indent << "TimeSteps: " << this->TimeSteps << "\n";
   os << indent << "Octaves: " << this->Octaves << "\n";
   os << indent << "Lacunarity: " << this->Lacunarity << "\n";
   os << indent << "Gain: " << this->Gain << "\n";
@@ -807,6 +878,7 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Magnification: " << this->Magnification << "\n";
   os << indent << "MaskThreshold: " << this->MaskThreshold << "\n";
   os << indent << "MaskUpperThreshold: " << this->MaskUpperThreshold << "\n";
+  os << indent << "BlankValue: " << this->BlankValue << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "ResultArrayName: " << (this->ResultArrayName ? this->ResultArrayName : "(none)")
      << "\n";

@@ -15,7 +15,8 @@
  * get 3D noise whose metric lies in the surface. The blocks of a composite agree on it over all ranks: flat images
  * next to other data are surfaces, and structured grids one cell thick are surfaces only where no volume is. Turned images use lattices along their own axes.
  *
- * Vectors without a direction (zero, NaN, infinite) get isotropic noise and are counted in one warning.
+ * Vectors that are zero, NaN or infinite are blank (BlankValue); if more than half of the samples have no direction, a
+ * warning says so. Vectors along the normal of a surface get isotropic noise.
  * A missing array is an error in a plain dataset; a block of a composite without it is passed on and
  * counted. Automatic values and the plane of two components are agreed on by all ranks of the
  * Controller, which all have to take part.
@@ -79,6 +80,12 @@ public:
   {
     UNIFORM = 0,
     PERLIN = 1
+  };
+  enum BlankValueType
+  {
+    BLANK_ZERO = 0,
+    BLANK_NAN = 1,
+    BLANK_HIDDEN = 2
   };
 
   ///@{
@@ -222,11 +229,17 @@ public:
   ///@{
   /**
    * Pipeline time of one loop; time / TimePeriod is added to Phase. 0, the default: time does not
-   * matter. With it, an input without time steps becomes animated over the range 0 to TimePeriod, and one
-   * with a single time over one TimePeriod from there.
+   * matter. With it, an input without time steps gets TimeSteps of them, from 0 to one step before TimePeriod, and one
+   * with a single time the same from there.
    */
   vtkSetClampMacro(TimePeriod, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(TimePeriod, double);
+  ///@}
+
+  ///@{
+  /// Time steps that TimePeriod gives to steady data, 2 to 1000, default 24: the frames of a film that loops.
+  vtkSetClampMacro(TimeSteps, int, 2, 1000);
+  vtkGetMacro(TimeSteps, int);
   ///@}
 
   ///@{
@@ -315,6 +328,15 @@ public:
   ///@}
 
   ///@{
+  /**
+   * What the result is where vectors are zero, NaN or infinite, or beyond one of the thresholds: BLANK_ZERO, the default,
+   * BLANK_NAN, or BLANK_HIDDEN: 0, and the point or cell is hidden by vtkGhostType.
+   */
+  vtkSetClampMacro(BlankValue, int, BLANK_ZERO, BLANK_HIDDEN);
+  vtkGetMacro(BlankValue, int);
+  ///@}
+
+  ///@{
   /// Another seed, another noise; default 0.
   vtkSetMacro(Seed, int);
   vtkGetMacro(Seed, int);
@@ -375,6 +397,7 @@ protected:
   bool Animate = false;
   double Speed = 1.0;
   double TimePeriod = 0.0;
+  int TimeSteps = 24;
   int Octaves = 1;
   double Lacunarity = 2.0;
   double Gain = 0.5;
@@ -387,6 +410,7 @@ protected:
   int Magnification = 1;
   double MaskThreshold = 0.0;
   double MaskUpperThreshold = 0.0;
+  int BlankValue = BLANK_ZERO;
   int Seed = 0;
   char* ResultArrayName = nullptr;
   bool OutputMetric = false;

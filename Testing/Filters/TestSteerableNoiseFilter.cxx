@@ -333,7 +333,7 @@ TEST(SteerableNoiseFilter, FeatureSizeZeroIsAHundredthOfTheDiagonalOrFourSpacing
   EXPECT_NEAR(filter->GetResolvedFeatureSize(), std::exp2(-1.25), 1e-9); // 0.4
 }
 
-TEST(SteerableNoiseFilter, VectorsWithoutDirectionGiveOneCountedWarning)
+TEST(SteerableNoiseFilter, AFewVectorsWithoutDirectionAreBlankWithoutAWord)
 {
   auto image = MakeImage(40, 30, 1);
   vtkDataArray* v = image->GetPointData()->GetVectors();
@@ -347,9 +347,15 @@ TEST(SteerableNoiseFilter, VectorsWithoutDirectionGiveOneCountedWarning)
   auto messages = Listen(filter);
   filter->SetInputData(image);
   filter->Update();
-  EXPECT_TRUE(AllFinite(Values(filter->GetOutputDataObject(0))));
-  EXPECT_EQ(messages->Warnings, 1);
-  EXPECT_NE(messages->Text.find("4 of 1200"), std::string::npos) << messages->Text;
+  const std::vector<float> values = Values(filter->GetOutputDataObject(0));
+  EXPECT_TRUE(AllFinite(values));
+  for (const int i : { 3, 100, 200, 201 })
+  {
+    EXPECT_EQ(values[i], 0.0f) << i;
+  }
+  EXPECT_EQ(std::count(values.begin(), values.end(), 0.0f), 4);
+  EXPECT_EQ(messages->Warnings, 0) << messages->Text;
+  EXPECT_EQ(messages->Text, "");
   EXPECT_EQ(filter->GetNumberOfDegenerateSamples(), 4);
 
   // Ghosts are evaluated and not counted.
@@ -367,6 +373,76 @@ TEST(SteerableNoiseFilter, VectorsWithoutDirectionGiveOneCountedWarning)
               ->GetPointData()
               ->GetArray(vtkDataSetAttributes::GhostArrayName()),
     nullptr);
+}
+
+TEST(SteerableNoiseFilter, MoreThanHalfWithoutDirectionGiveOneCountedWarning)
+{
+  for (const int zeros : { 600, 601, 1200 })
+  {
+    auto image = MakeImage(40, 30, 1);
+    for (int i = 0; i < zeros; ++i)
+    {
+      image->GetPointData()->GetVectors()->SetTuple3(i, 0, 0, 0);
+    }
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    auto messages = Listen(filter);
+    filter->SetInputData(image);
+    filter->Update();
+    EXPECT_EQ(messages->Warnings, zeros > 600 ? 1 : 0) << messages->Text;
+    EXPECT_EQ(messages->Text.find(std::to_string(zeros) + " of 1200 samples have no direction") != std::string::npos,
+      zeros > 600)
+      << messages->Text;
+    EXPECT_EQ(filter->GetNumberOfDegenerateSamples(), zeros);
+  }
+}
+
+TEST(SteerableNoiseFilter, BlankIsZeroNaNOrHidden)
+{
+  using Filter = vtkSteerableNoiseFilter;
+  for (const int mode : { Filter::BLANK_ZERO, Filter::BLANK_NAN, Filter::BLANK_HIDDEN })
+  {
+    auto image = MakeImage(40, 30, 1);
+    vtkDataArray* v = image->GetPointData()->GetVectors();
+    v->SetTuple3(3, 0, 0, 0);
+    v->SetTuple3(77, 0.001, 0, 0); // MaskThreshold
+    v->SetTuple3(99, 1e-200, 0, 0); // MaskThreshold
+    v->SetTuple3(200, 500, 0, 0); // MaskUpperThreshold
+    vtkNew<vtkUnsignedCharArray> ghosts;
+    ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+    ghosts->SetNumberOfTuples(1200);
+    ghosts->Fill(0);
+    ghosts->SetValue(3, vtkDataSetAttributes::DUPLICATEPOINT);
+    image->GetPointData()->AddArray(ghosts);
+    vtkNew<Filter> filter;
+    filter->SetInputData(image);
+    filter->SetMaskThreshold(0.01);
+    filter->SetMaskUpperThreshold(100.0);
+    filter->SetBlankValue(mode);
+    filter->Update();
+    const std::vector<float> values = Values(filter->GetOutputDataObject(0));
+    vtkDataArray* types = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))
+                            ->GetPointData()
+                            ->GetArray(vtkDataSetAttributes::GhostArrayName());
+    ASSERT_NE(types, nullptr);
+    for (int i = 0; i < 1200; ++i)
+    {
+      const bool blank = i == 3 || i == 77 || i == 99 || i == 200;
+      EXPECT_EQ(std::isnan(values[i]), blank && mode == Filter::BLANK_NAN) << i;
+      EXPECT_EQ(values[i] == 0.0f, blank && mode != Filter::BLANK_NAN) << i;
+      const int duplicate = i == 3 ? vtkDataSetAttributes::DUPLICATEPOINT : 0;
+      const int hidden = blank && mode == Filter::BLANK_HIDDEN ? vtkDataSetAttributes::HIDDENPOINT : 0;
+      EXPECT_EQ(int(types->GetComponent(i, 0)), duplicate | hidden) << i;
+      EXPECT_EQ(int(ghosts->GetValue(i)), duplicate) << "the input is written";
+    }
+    // The gaps between streaks are 0 and not blank.
+    filter->SetBasis(Filter::STREAKS);
+    filter->SetDensity(0.01);
+    filter->Update();
+    const std::vector<float> streaks = Values(filter->GetOutputDataObject(0));
+    EXPECT_EQ(std::count_if(streaks.begin(), streaks.end(), [](float value) { return std::isnan(value); }),
+      mode == Filter::BLANK_NAN ? 4 : 0);
+    EXPECT_GT(std::count(streaks.begin(), streaks.end(), 0.0f), 20);
+  }
 }
 
 TEST(SteerableNoiseFilter, HugeAndTinyVectorsSteerLikeOthers)
@@ -553,8 +629,17 @@ TEST(SteerableNoiseFilter, TimeMovesASteadyFlow)
   vtkInformation* info = filter->GetOutputInformation(0);
   using SDDP = vtkStreamingDemandDrivenPipeline;
   ASSERT_TRUE(info->Has(SDDP::TIME_RANGE()));
-  EXPECT_EQ(info->Get(SDDP::TIME_RANGE())[1], 2.0);
-  EXPECT_FALSE(info->Has(SDDP::TIME_STEPS()));
+  // The end of the period is its start: it is not offered again.
+  ASSERT_EQ(info->Length(SDDP::TIME_STEPS()), 24);
+  EXPECT_EQ(info->Get(SDDP::TIME_STEPS(), 0), 0.0);
+  EXPECT_EQ(info->Get(SDDP::TIME_STEPS(), 6), 0.5);
+  EXPECT_EQ(info->Get(SDDP::TIME_STEPS(), 23), 2.0 * 23.0 / 24.0);
+  EXPECT_EQ(info->Get(SDDP::TIME_RANGE())[0], 0.0);
+  EXPECT_EQ(info->Get(SDDP::TIME_RANGE())[1], info->Get(SDDP::TIME_STEPS(), 23));
+  filter->SetTimeSteps(4);
+  filter->UpdateInformation();
+  ASSERT_EQ(info->Length(SDDP::TIME_STEPS()), 4);
+  EXPECT_EQ(info->Get(SDDP::TIME_STEPS(), 3), 1.5);
   const auto at = [&](double time)
   {
     filter->UpdateTimeStep(time);
@@ -583,6 +668,7 @@ TEST(SteerableNoiseFilter, ASingleTimeIsSteady)
   filter->SetInputConnection(producer->GetOutputPort());
   filter->SetFeatureSize(5.0);
   filter->SetTimePeriod(2.0);
+  filter->SetTimeSteps(8);
   const auto offer = [&](const std::vector<double>& steps, const std::vector<double>& range)
   {
     producer->UpdateInformation();
@@ -603,15 +689,16 @@ TEST(SteerableNoiseFilter, ASingleTimeIsSteady)
     return std::vector<double>{ out->Get(SDDP::TIME_RANGE())[0], out->Get(SDDP::TIME_RANGE())[1] };
   };
   using Range = std::vector<double>;
-  EXPECT_EQ(offer({ 313.0 }, { 313.0, 313.0 }), Range({ 313.0, 315.0 }));
-  EXPECT_FALSE(filter->GetOutputInformation(0)->Has(SDDP::TIME_STEPS()));
+  EXPECT_EQ(offer({ 313.0 }, { 313.0, 313.0 }), Range({ 313.0, 314.75 }));
+  EXPECT_EQ(filter->GetOutputInformation(0)->Length(SDDP::TIME_STEPS()), 8);
+  EXPECT_EQ(filter->GetOutputInformation(0)->Get(SDDP::TIME_STEPS(), 1), 313.25);
   filter->UpdateTimeStep(313.0);
   const std::vector<float> start = Values(filter->GetOutputDataObject(0));
   filter->UpdateTimeStep(313.5);
   EXPECT_NE(Values(filter->GetOutputDataObject(0)), start);
-  EXPECT_EQ(offer({ 313.0 }, {}), Range({ 313.0, 315.0 }));
-  EXPECT_EQ(offer({}, { 7.0, 7.0 }), Range({ 7.0, 9.0 }));
-  EXPECT_EQ(offer({}, {}), Range({ 0.0, 2.0 }));
+  EXPECT_EQ(offer({ 313.0 }, {}), Range({ 313.0, 314.75 }));
+  EXPECT_EQ(offer({}, { 7.0, 7.0 }), Range({ 7.0, 8.75 }));
+  EXPECT_EQ(offer({}, {}), Range({ 0.0, 1.75 }));
   // Data with times of their own keep them.
   EXPECT_EQ(offer({ 1.0, 4.0 }, { 1.0, 4.0 }), Range({ 1.0, 4.0 }));
   EXPECT_EQ(filter->GetOutputInformation(0)->Length(SDDP::TIME_STEPS()), 2);
@@ -894,9 +981,9 @@ TEST(SteerableNoiseFilter, EveryPropertyIsPrinted)
   filter->Print(text);
   for (const char* name : { "FeatureSize", "StreakLength", "Quality", "MinimumEigenvalue", "EigenvalueSum",
          "LatticeWindow", "Strength", "StrengthMode", "ReferenceMagnitude", "Normalization",
-         "FollowCurvature", "Basis", "Density", "Phase", "Animate", "Speed", "TimePeriod",
+         "FollowCurvature", "Basis", "Density", "Phase", "Animate", "Speed", "TimePeriod", "TimeSteps",
          "Octaves", "Lacunarity", "Gain", "Turbulence", "Fade", "Falloff", "Lattice", "GradientSet",
-         "Period", "Magnification", "MaskThreshold", "MaskUpperThreshold", "Seed", "ResultArrayName", "OutputMetric" })
+         "Period", "Magnification", "MaskThreshold", "MaskUpperThreshold", "BlankValue", "Seed", "ResultArrayName", "OutputMetric" })
   {
     EXPECT_NE(text.str().find(name), std::string::npos) << name;
   }

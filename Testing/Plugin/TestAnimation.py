@@ -29,7 +29,7 @@ with tempfile.TemporaryDirectory() as folder:
     made = runpy.run_path(os.path.join(pt.SOURCE, "Utilities", "animate.py"))
     noise, view = made["noise"], made["view"]
     paths = [os.path.join(folder, "frame.%04d.png" % i) for i in range(FRAMES)]
-    pt.check(sorted(os.listdir(folder)) == [os.path.basename(p) for p in paths], "the frames that were asked for")
+    pt.check(sorted(os.listdir(folder)) == [os.path.basename(p) for p in paths], "the frames that were asked for: %s" % sorted(os.listdir(folder)))
     frames = [pixels(path) for path in paths]
     pt.check(min(frame.std() for frame in frames) > 20, "noise in every frame")
     for i in range(FRAMES):
@@ -43,8 +43,8 @@ with tempfile.TemporaryDirectory() as folder:
     pt.check(abs(pixels(later) - frames[0]).max() <= 1, "after one period comes the first frame")
 
 filter_object = noise.GetClientSideObject()
-offered = filter_object.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_RANGE())
-pt.check(tuple(offered) == (0.0, FRAMES), "the filter offers the range of one loop, got %s" % (offered,))
+offered = filter_object.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+pt.check(list(offered) == list(range(FRAMES)), "the filter offers the frames of one loop, got %s" % (offered,))
 values = []
 for periods in (0.0, 0.5, 1.0, 1.5):
     simple.UpdatePipeline(time=periods * FRAMES, proxy=noise)
@@ -61,6 +61,16 @@ first, second = (v.reshape(rows, columns)[: rows // 6].astype(float) for v in (v
 slope = numpy.gradient(0.5 * (first + second), axis=1)
 drift = -(slope * (second - first)).sum() / (slope**2).sum()
 pt.check(drift > 0.05, "the pattern moves downstream, %g samples" % drift)
+# Play and Save Animation take the time steps as they are, 24 where nobody says another number.
+noise.TimePeriod = 3.0
+noise.TimeSteps = 24
+noise.UpdatePipelineInformation()
+scene = simple.GetAnimationScene()
+scene.UpdateAnimationUsingDataTimeSteps()
+steps = list(simple.GetTimeKeeper().TimestepValues)
+pt.check(len(steps) == 24 and numpy.allclose(steps, numpy.arange(24) / 8.0), "24 steps without the doubled end: %s" % steps)
+pt.check(scene.PlayMode == "Snap To TimeSteps", "the animation goes by the steps, not %s" % scene.PlayMode)
+pt.check(scene.EndTime == steps[-1], "and ends one step before the loop closes, at %g" % scene.EndTime)
 # Without TimePeriod time does not matter, and there is no range on offer.
 noise.TimePeriod = 0.0
 simple.UpdatePipeline(time=0.3, proxy=noise)

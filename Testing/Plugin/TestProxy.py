@@ -8,13 +8,16 @@ from paraview import simple
 
 pt.load_plugin()
 XML = {}
+LABELS = []
 for file in ("SteerableNoise.xml", "SubbandNoise.xml"):
     try:
         tree = ElementTree.parse("%s/Plugin/%s" % (pt.SOURCE, file))
     except FileNotFoundError:
         continue
     for proxy in tree.getroot().iter("SourceProxy"):
-        XML[proxy.get("class")] = proxy
+        LABELS.append(proxy.get("label"))
+        if proxy.get("base_proxyname") is None:  # others are names for one of these
+            XML[proxy.get("class")] = proxy
 
 PROPERTY_TAGS = ("DoubleVectorProperty", "IntVectorProperty", "StringVectorProperty")
 pt.check("vtkSteerableNoiseFilter" in XML, "the XML names vtkSteerableNoiseFilter")
@@ -52,10 +55,31 @@ for name, proxy in XML.items():
                     abs(clamped - float(domain.get(bound))) < 1e-12,
                     "%s is clamped to its %s %s, got %s" % (where, bound, domain.get(bound), clamped),
                 )
-advanced = [
-    p for p in XML["vtkSteerableNoiseFilter"].iter() if p.get("panel_visibility") == "advanced"
-]
-pt.check(len(advanced) >= 10, "rare properties are advanced")
+# The panel: few properties at first sight, in plain words, and none that does not apply.
+panel = {p.get("name"): p for tag in PROPERTY_TAGS for p in XML["vtkSteerableNoiseFilter"].iter(tag)
+         if p.get("information_only") != "1"}
+first_sight = [name for name, p in panel.items() if p.get("panel_visibility") != "advanced"]
+pt.check(len(first_sight) <= 10, "ten properties at most without 'advanced': %s" % first_sight)
+for name, prop in panel.items():
+    # pvpython 5.11 takes its names from the labels.
+    label = (prop.get("label") or name).replace(" ", "")
+    pt.check(label == name, "%s: a label of '%s' would be another name in scripts" % (name, label))
+    words = prop.find("Documentation").text.lower()
+    for word in ("surflet", "lattice corner has", "eigenvalue of", "metric at"):
+        pt.check(word not in words, "%s says '%s' in plain words" % (name, word))
+CONDITIONS = {
+    "Density": ("Basis", "2", None), "ReferenceMagnitude": ("StrengthMode", "1", None),
+    "StreakLength": ("LatticeWindow", "0", None), "Quality": ("LatticeWindow", "1", None),
+    "MinimumEigenvalue": ("LatticeWindow", "1", None), "Falloff": ("LatticeWindow", "1", None),
+    "Lacunarity": ("Octaves", "1", "1"), "Gain": ("Octaves", "1", "1"), "TimeSteps": ("TimePeriod", "0", "1"),
+}
+shown_if = {}
+for name, prop in panel.items():
+    for decorator in prop.iter("PropertyWidgetDecorator"):
+        pt.check(decorator.get("mode") == "visibility", name + " is hidden, not only grey")
+        shown_if[name] = tuple(decorator.get(key) for key in ("property", "value", "inverse"))
+pt.check(shown_if == CONDITIONS, "what does not apply is hidden: %s" % shown_if)
+pt.check({c[0] for c in CONDITIONS.values()} <= set(panel), "conditions name properties that there are")
 
 # The filter on the wake, by the names scripts use.
 wake = simple.OpenDataFile(pt.WAKE)
@@ -79,6 +103,19 @@ pt.check(
     wake.GetClientSideObject().GetOutput().GetCellData().GetArray("SteerableNoise") is None,
     "the input is not written",
 )
+
+# Quick launch finds it by the words of who knows LIC; ParaView 5.11 looks at labels only.
+for word in ("flow", "lic", "noise", "streak", "convolution"):
+    pt.check(any(word in label.lower() for label in LABELS), "'%s' is in a label of %s" % (word, LABELS))
+named = simple.FlowNoiseLICStreaksConvolution(Input=wake, StreakLength=3)
+by_name = simple.SteerableNoise(Input=wake, StreakLength=3)
+pt.check(list(named.SelectInputVectors) == ["CELLS", "velocity"], "the vectors are found by the other name too")
+for proxy in (named, by_name):
+    simple.UpdatePipeline(proxy=proxy)
+one, other = (pt.array(proxy.GetClientSideObject().GetOutput()) for proxy in (named, by_name))
+pt.check(bool((one == other).all()) and one.std() > 0.5, "the same noise by either name")
+simple.Delete(named)
+simple.Delete(by_name)
 
 # Each property through the proxy changes the noise.
 CHANGES = dict(

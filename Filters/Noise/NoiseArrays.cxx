@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseArrays.h"
 
+#include "TupleFloats.h"
+
 #include "SteeringChoice.h"
 #include "SurfaceFields.h"
 
@@ -59,33 +61,7 @@ void ForEachTuple(vtkDataArray* array, std::size_t first, std::size_t count, Vis
   }
 }
 
-/// Floats square to at most 1e38: what is longer or shorter keeps its direction.
-constexpr double Longest = 1e18;
-
-void ToFloats(const double* values, int count, float* out)
-{
-  double largest = 0.0;
-  for (int c = 0; c < count; ++c)
-  {
-    largest = std::max(largest, std::abs(values[c]));
-  }
-  double scale = 1.0;
-  if (std::isfinite(largest) && largest > Longest)
-  {
-    scale = Longest / largest;
-  }
-  else if (largest > 0.0 && largest < 1.0 / Longest)
-  {
-    scale = 1.0 / (Longest * largest);
-  }
-  for (int c = 0; c < count; ++c)
-  {
-    // Beyond the range of a float only what is not finite is left.
-    const double value = values[c] * scale;
-    out[c] =
-      std::isfinite(value) ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
-  }
-}
+using steerable::ToFloats;
 
 class VectorReader : public steerable::TupleReader<float>
 {

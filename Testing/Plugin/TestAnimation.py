@@ -99,7 +99,7 @@ with tempfile.TemporaryDirectory() as folder:
     sys.argv = ["animate.py", writer.GetFileName(), os.path.join(folder, "frames"), str(FRAMES)]
     made = runpy.run_path(os.path.join(pt.SOURCE, "Utilities", "animate.py"))
     simple.Delete(made["view"])
-    frames = [pixels(os.path.join(folder, "frames", "frame_%04d.png" % i)) for i in range(FRAMES)]
+    frames = [pixels(os.path.join(folder, "frames", "frame.%04d.png" % i)) for i in range(FRAMES)]
     for i in range(FRAMES):
         difference = abs(frames[i] - frames[(i + 1) % FRAMES]).mean()
         pt.check(difference > 3, "one time in the file: frame %d differs from the next one, mean %g" % (i, difference))

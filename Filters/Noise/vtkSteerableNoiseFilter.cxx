@@ -24,6 +24,7 @@
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
+#include "vtkPointSet.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
@@ -210,6 +211,20 @@ vtkSmartPointer<vtkUnsignedCharArray> OwnGhosts(const Block& block)
   return own;
 }
 
+/// Points whose coordinates are not finite: unlike vectors that are missing, they are a mistake in the mesh.
+vtkIdType CountBadPlaces(vtkDataSet* dataset)
+{
+  auto* set = vtkPointSet::SafeDownCast(dataset);
+  vtkIdType count = 0;
+  for (vtkIdType i = 0; set && i < set->GetNumberOfPoints(); ++i)
+  {
+    double place[3];
+    set->GetPoint(i, place);
+    count += !std::isfinite(place[0] + place[1] + place[2]);
+  }
+  return count;
+}
+
 /// How long the vectors of all blocks and ranks are, and which of them are left out.
 struct Lengths
 {
@@ -301,6 +316,7 @@ struct vtkSteerableNoiseFilter::Internals
   steerable::EvaluationCounts Counts;
   vtkIdType Samples = 0;
   vtkIdType TooLong = 0;
+  vtkIdType BadPlaces = 0;
   vtkIdType BlocksWithout = 0;
   /// Of an AMR, which Magnification leaves alone.
   vtkIdType ImagesAsTheyAre = 0;
@@ -387,6 +403,10 @@ struct vtkSteerableNoiseFilter::Internals
     const vtkIdType tooLong =
       std::count(leftOut.begin(), leftOut.end(), noise::Samples::IsTooLong);
     this->TooLong += tooLong;
+    if (anyDegenerate)
+    {
+      this->BadPlaces += CountBadPlaces(block.GetOriginal());
+    }
     if (anyDegenerate || counts.Stagnant > 0 || tooLong > 0)
     {
       this->Blank(block, leftOut, parameters.MaskThreshold, values);
@@ -477,6 +497,12 @@ struct vtkSteerableNoiseFilter::Internals
               << this->Counts.Degenerate << " of " << this->Samples
               << " samples have no direction (zero, NaN, infinite or along the surface's normal). "
                  "Check that the right array is chosen.";
+    }
+    if (this->BadPlaces > 0)
+    {
+      message << "\n"
+              << this->BadPlaces
+              << " points have coordinates that are not finite: noise at them and beside them means nothing. Clean the mesh.";
     }
     if (composite && this->BlocksWithout > 0)
     {

@@ -599,7 +599,7 @@ int vtkSteerableNoiseFilter::RequestInformation(
     {
       steps[i] = only + this->TimePeriod * static_cast<double>(i) / static_cast<double>(steps.size());
     }
-    const double range[2] = { only, steps.back() };
+    const double range[2] = { only, only + this->TimePeriod };
     outInfo->Set(SDDP::TIME_STEPS(), steps.data(), this->TimeSteps);
     outInfo->Set(SDDP::TIME_RANGE(), range, 2);
   }

@@ -50,6 +50,26 @@ Between Locate(double place, int count)
   return { low, std::min<vtkIdType>(low + 1, count - 1), inside - low };
 }
 
+/// Calls visit(x, y, z, sample) for all samples of a fine lattice, with their places on a coarse one, on threads.
+template <typename Place, typename Visit>
+void ForEachSample(const int coarse[3], const int fine[3], Place&& place, Visit&& visit)
+{
+  vtkSMPTools::For(0, static_cast<vtkIdType>(fine[1]) * fine[2],
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType row = begin; row < end; ++row)
+      {
+        const int jk[2] = { static_cast<int>(row % fine[1]), static_cast<int>(row / fine[1]) };
+        const Between y = Locate(place(1, jk[0]), coarse[1]);
+        const Between z = Locate(place(2, jk[1]), coarse[2]);
+        for (int i = 0; i < fine[0]; ++i)
+        {
+          visit(Locate(place(0, i), coarse[0]), y, z, row * fine[0] + i);
+        }
+      }
+    });
+}
+
 /**
  * Interpolates all arrays of `list` from a coarse lattice to a fine one. Samples that are `hidden` (one value for
  * each, or empty) have no part in those between them and others.
@@ -58,48 +78,38 @@ template <typename Place>
 void Interpolate(ArrayList& list, const int coarse[3], const int fine[3],
   const std::vector<unsigned char>& hidden, Place&& place)
 {
-  vtkSMPTools::For(0, static_cast<vtkIdType>(fine[1]) * fine[2],
-    [&](vtkIdType begin, vtkIdType end)
+  ForEachSample(coarse, fine, place,
+    [&](const Between& x, const Between& y, const Between& z, vtkIdType sample)
     {
       vtkIdType ids[8];
       double weights[8];
-      for (vtkIdType row = begin; row < end; ++row)
+      int used = 0;
+      double seen = 0.0;
+      for (int corner = 0; corner < 8; ++corner)
       {
-        const int jk[2] = { static_cast<int>(row % fine[1]), static_cast<int>(row / fine[1]) };
-        const Between y = Locate(place(1, jk[0]), coarse[1]);
-        const Between z = Locate(place(2, jk[1]), coarse[2]);
-        for (int i = 0; i < fine[0]; ++i)
+        const double weight = (corner & 1 ? x.Share : 1.0 - x.Share) *
+          (corner & 2 ? y.Share : 1.0 - y.Share) * (corner & 4 ? z.Share : 1.0 - z.Share);
+        if (!(weight > 0.0))
         {
-          const Between x = Locate(place(0, i), coarse[0]);
-          int used = 0;
-          double seen = 0.0;
-          for (int corner = 0; corner < 8; ++corner)
-          {
-            const double weight = (corner & 1 ? x.Share : 1.0 - x.Share) *
-              (corner & 2 ? y.Share : 1.0 - y.Share) * (corner & 4 ? z.Share : 1.0 - z.Share);
-            if (!(weight > 0.0))
-            {
-              continue; // 0 times NaN is NaN
-            }
-            const vtkIdType cx = corner & 1 ? x.High : x.Low;
-            const vtkIdType cy = corner & 2 ? y.High : y.Low;
-            const vtkIdType cz = corner & 4 ? z.High : z.Low;
-            ids[used] = (cz * coarse[1] + cy) * coarse[0] + cx;
-            weights[used++] = weight;
-            seen += hidden.empty() || hidden[ids[used - 1]] ? 0.0 : weight;
-          }
-          for (int n = used - 1; seen > 0.0 && n >= 0; --n)
-          {
-            weights[n] /= seen;
-            if (hidden[ids[n]])
-            {
-              std::swap(ids[n], ids[used - 1]);
-              std::swap(weights[n], weights[--used]);
-            }
-          }
-          list.Interpolate(used, ids, weights, row * fine[0] + i);
+          continue; // 0 times NaN is NaN
+        }
+        const vtkIdType cx = corner & 1 ? x.High : x.Low;
+        const vtkIdType cy = corner & 2 ? y.High : y.Low;
+        const vtkIdType cz = corner & 4 ? z.High : z.Low;
+        ids[used] = (cz * coarse[1] + cy) * coarse[0] + cx;
+        weights[used++] = weight;
+        seen += hidden.empty() || hidden[ids[used - 1]] ? 0.0 : weight;
+      }
+      for (int n = used - 1; seen > 0.0 && n >= 0; --n)
+      {
+        weights[n] /= seen;
+        if (hidden[ids[n]])
+        {
+          std::swap(ids[n], ids[used - 1]);
+          std::swap(weights[n], weights[--used]);
         }
       }
+      list.Interpolate(used, ids, weights, sample);
     });
 }
 
@@ -124,43 +134,32 @@ void CopyLabels(vtkPointData* from, vtkPointData* to, const int coarse[3], const
     const bool isGhost = ghosts &&
       std::string(vtkDataSetAttributes::GhostArrayName()) ==
         (labels->GetName() ? labels->GetName() : "");
-    vtkSMPTools::For(0, static_cast<vtkIdType>(fine[1]) * fine[2],
-      [&](vtkIdType begin, vtkIdType end)
+    ForEachSample(coarse, fine, place,
+      [&](const Between& x, const Between& y, const Between& z, vtkIdType sample)
       {
-        for (vtkIdType row = begin; row < end; ++row)
+        const auto at = [&](bool a, bool b, bool c)
         {
-          const int jk[2] = { static_cast<int>(row % fine[1]), static_cast<int>(row / fine[1]) };
-          const Between y = Locate(place(1, jk[0]), coarse[1]);
-          const Between z = Locate(place(2, jk[1]), coarse[2]);
-          for (int i = 0; i < fine[0]; ++i)
-          {
-            const Between x = Locate(place(0, i), coarse[0]);
-            const auto at = [&](bool a, bool b, bool c)
-            {
-              return ((c ? z.High : z.Low) * coarse[1] + (b ? y.High : y.Low)) * coarse[0] +
-                (a ? x.High : x.Low);
-            };
-            const vtkIdType out = row * fine[0] + i;
-            if (!isGhost)
-            {
-              labels->SetTuple(out, at(x.Share > 0.5, y.Share > 0.5, z.Share > 0.5), source);
-              continue;
-            }
-            unsigned char any = 0;
-            unsigned char all = 0xff;
-            for (int corner = 0; corner < 8; ++corner)
-            {
-              const bool a = corner & 1 && x.Share > 0.0;
-              const bool b = corner & 2 && y.Share > 0.0;
-              const bool c = corner & 4 && z.Share > 0.0;
-              const unsigned char ghost = ghosts->GetValue(at(a, b, c));
-              any |= ghost;
-              all &= ghost;
-            }
-            const unsigned char hidden = vtkDataSetAttributes::HIDDENPOINT;
-            labels->SetComponent(out, 0, (any & hidden) | (all & ~hidden));
-          }
+          return ((c ? z.High : z.Low) * coarse[1] + (b ? y.High : y.Low)) * coarse[0] +
+            (a ? x.High : x.Low);
+        };
+        if (!isGhost)
+        {
+          labels->SetTuple(sample, at(x.Share > 0.5, y.Share > 0.5, z.Share > 0.5), source);
+          return;
         }
+        unsigned char any = 0;
+        unsigned char all = 0xff;
+        for (int corner = 0; corner < 8; ++corner)
+        {
+          const bool a = corner & 1 && x.Share > 0.0;
+          const bool b = corner & 2 && y.Share > 0.0;
+          const bool c = corner & 4 && z.Share > 0.0;
+          const unsigned char ghost = ghosts->GetValue(at(a, b, c));
+          any |= ghost;
+          all &= ghost;
+        }
+        const unsigned char hidden = vtkDataSetAttributes::HIDDENPOINT;
+        labels->SetComponent(sample, 0, (any & hidden) | (all & ~hidden));
       });
   }
 }

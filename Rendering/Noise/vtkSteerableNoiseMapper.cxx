@@ -486,7 +486,8 @@ void vtkSteerableNoiseMapper::FindFields()
   bool changed = false;
   const vtkMTimeType chosen = std::max(
     this->GetInputArrayInformation(0)->GetMTime(), internals.ChosenTime.GetMTime());
-  vtkMTimeType newest = chosen;
+  // Of the composite too: a block may have gone.
+  vtkMTimeType newest = std::max(input ? input->GetMTime() : 0, chosen);
   ForEachPolyData(input, [&](vtkPolyData* data) { newest = std::max(newest, data->GetMTime()); });
   if (newest != internals.OwnTime)
   {
@@ -554,11 +555,9 @@ void vtkSteerableNoiseMapper::FindFields()
     internals.Variant = variant;
     internals.VariantTime.Modified();
   }
-  const vtkMTimeType time =
-    std::max(input ? input->GetMTime() : 0, chosen);
-  if (!internals.AnyNoise && !why.empty() && internals.WarningTime != time)
+  if (!internals.AnyNoise && !why.empty() && internals.WarningTime != newest)
   {
-    internals.WarningTime = time;
+    internals.WarningTime = newest;
     vtkWarningMacro(<< why << " Until then the surface shows its own colours.");
   }
 }

@@ -18,7 +18,7 @@
  * place, same value. With PIXELS, the default, streaks keep their width on the screen.
  *
  * A vertex takes 36 bytes of graphics memory more than a plain mapper's (24 with tensors). Properties that
- * are drawn, not computed from (all but the array, VectorsPerCell and what the superclass has), upload nothing when they
+ * are drawn, not computed from (all but the array, VectorsPerCell, MaskUpperThreshold and what the superclass has), upload nothing when they
  * change. The mapper keeps as many bytes in main memory.
  *
  * @sa

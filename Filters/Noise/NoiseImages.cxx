@@ -203,7 +203,7 @@ void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int fac
 
 int GetAutomaticMagnification(vtkInformation* inInfo, double featureSize, double fineness)
 {
-  constexpr double mostSamples = 8388608.0;
+  constexpr double mostSamples = 4194304.0;
   constexpr int mostFactor = 16;
   int whole[6];
   double spacing[3] = { 1.0, 1.0, 1.0 };

@@ -19,7 +19,7 @@ void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int fac
 
 /**
  * The smallest factor, up to 16, with which a streak of the finest octave, `fineness` times as fine as `featureSize`
- * (0: automatic), has 6 samples, but no more than 2^23 in all. Only from the whole extent, so the same for all pieces.
+ * (0: automatic), has 6 samples, but no more than 2^22 in all. Only from the whole extent, so the same for all pieces.
  */
 int GetAutomaticMagnification(vtkInformation* inInfo, double featureSize, double fineness);
 

@@ -305,7 +305,7 @@ public:
    * Images only, also in composites but those of an AMR, whose levels say how fine they are: samples per sample of
    * the input along each axis, 1 to 16, default 1. Point arrays are interpolated linearly, cell arrays are
    * repeated, vectors on cells interpolated for the noise. 0 is automatic: as many as give a streak (of the finest
-   * octave) 6 samples, but no more than 2^23 in all; the images of composites stay as they are. ParaView's panel
+   * octave) 6 samples, but no more than 2^22 in all; the images of composites stay as they are. ParaView's panel
    * begins with 0.
    */
   vtkSetClampMacro(Magnification, int, 0, 16);

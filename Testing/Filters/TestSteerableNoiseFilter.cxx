@@ -820,7 +820,7 @@ TEST(SteerableNoiseFilter, AutomaticMagnificationGivesAStreakSixSamples)
     { { 41, 31, 1 }, 1.0, 6.0, 1, 1 },    // fine enough
     { { 41, 31, 1 }, 1.0, 6.0, 2, 2 },    // the second octave is half as wide
     { { 41, 31, 1 }, 1.0, 0.1, 1, 16 },   // the most there is
-    { { 41, 31, 1 }, 1.0, 0.0, 1, 16 },   // automatic: a hundredth of the diagonal, 50, is 0.5
+    { { 41, 31, 1 }, 1.0, 0.0, 1, 12 },   // automatic: a hundredth of the diagonal, 50, is 0.5
     { { 401, 301, 1 }, 1.0, 0.0, 1, 2 },  // and here 5
     { { 801, 601, 1 }, 1.0, 0.6, 1, 2 },  // 10, but 3 are above 2^22 samples
     { { 101, 101, 101 }, 1.0, 2.0, 1, 1 } // 2 are 8 million

@@ -307,7 +307,10 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
 
   float noise = 0.0;
   float variance = 0.0;
-  for (int i = begin.x; i <= end.x; ++i)
+  // Loops test at their end, since software OpenGL (llvmpipe) goes through a body once more where a loop ends before
+  // it. A row or corner too many adds 0.
+  int i = begin.x;
+  do
   {
     float x = float(i) - f.x;
     // Where the streamline's parabola has this x, and its direction (1, turn) there. `turns` is 0 where it
@@ -317,7 +320,8 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
     float inverse = 1.0 / root;
     float s0 = 2.0 * x / (up.x + root);
     s0 = turns < 0.06 ? clamp(s0, -farthest, farthest) : s0;
-    vec2 turn = (up.yz + s0 * d.yz) * inverse;
+    vec2 turned = s0 * d.yz;
+    vec2 turn = (up.yz + turned) * inverse;
     // To first order the section is the ellipse t^2 + h^2 < left with the sides A and B.
     vec2 A = C.yz - C.x * turn;
     vec2 B = M.yz - M.x * turn;
@@ -334,14 +338,15 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
     float beyond = max(-turns, 0.0) * perTurn;
     float left = 1.0 + strong + min(4.0 * max(slack.x, slack.y), 2.0) -
       ks0 * s0 * (1.0 - kr * flat2) - beyond * beyond;
-    vec2 middle = f.yz + s0 * up.yz + 0.5 * s0 * s0 * d.yz + onward +
+    vec2 middle = f.yz + s0 * (up.yz + 0.5 * turned) + onward +
       ks0 * inverse * (C.x * A + M.x * B);
     float halfY = sqrt(clamp(left, 0.0, 1.0) * yy) + slack.x;
     int beginY = max(begin.y, int(ceil(middle.x - halfY)));
     int endY = left > 0.0 ? min(end.y, int(floor(middle.x + halfY))) : beginY - 1;
     vec3 ofSection = x * axes[0];
     uint hashX = HashOneAxis(corner.x + uint(i), first.x, last.x) ^ seed;
-    for (int j = beginY; j <= endY; ++j)
+    int j = beginY;
+    do
     {
       float y = float(j) - f.y;
       float dy = float(j) - middle.x;
@@ -352,7 +357,8 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
       int endZ = leftZ > 0.0 ? min(end.z, int(floor(middleZ + halfZ))) : beginZ - 1;
       vec3 ofRow = ofSection + y * axes[1];
       uint hashXY = hashX ^ HashOneAxis(corner.y + uint(j), first.y, last.y);
-      for (int l = beginZ; l <= endZ; ++l)
+      int l = beginZ;
+      do
       {
         uint hash = HashJoinAxes(hashXY ^ HashOneAxis(corner.z + uint(l), first.z, last.z));
         vec3 sth = ofRow + (float(l) - f.z) * axes[2];
@@ -384,9 +390,9 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
         noise += amplitude * GradientDot(hash, Gv);
         variance += dot(Gv, Gv);
 #endif
-      }
-    }
-  }
+      } while (++l <= endZ);
+    } while (++j <= endY);
+  } while (++i <= end.x);
 #ifndef NOISE_STREAKS
   variance *= 1.0 / 3.0; // of a gradient along one axis
 #endif
@@ -503,15 +509,15 @@ float NoiseOfFragment(vec3 place, vec3 steering, vec3 steering2, vec3 bend, vec3
   float below = floor(level);
   float turn = 1.5707963 * smoothstep(0.33, 0.67, level - below);
   // A loop ends where no fragment of a group goes on; a branch would cost all of them both lattices.
-  int first = turn < 1.5707 ? 0 : 1;
+  int i = turn < 1.5707 ? 0 : 1;
   int last = turn > 0.0001 ? 1 : 0;
   float noise = 0.0;
-  for (int i = first; i <= last; ++i)
+  do
   {
     int l = int(below) + i;
     noise += (i == 0 ? cos(turn) : sin(turn)) *
       SteerableNoise(place, exp2(float(l)), l, pixel, metric, curvature, normal);
-  }
+  } while (++i <= last);
   return noise;
 #else
   return SteerableNoise(place, noiseFeature, 0, pixel, metric, curvature, normal);

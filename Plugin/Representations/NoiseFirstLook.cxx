@@ -87,13 +87,14 @@ void ShowNoise(vtkObject*, unsigned long, void*, void* data)
   {
     int association = 0;
     vtkPVArrayInformation* noise = FindNoise(source, association);
-    if (noise && !large)
+    auto* shown = vtkSMPVRepresentationProxy::SafeDownCast(info->Proxy);
+    if (noise && shown && !large)
     {
       if (std::strcmp(vtkSMPropertyHelper(type).GetAsString(), "Outline") == 0)
       {
         vtkSMPropertyHelper(type).Set("Surface");
       }
-      vtkSMPVRepresentationProxy::SetScalarColoring(info->Proxy, noise->GetName(), association);
+      shown->SetScalarColoring(noise->GetName(), association);
     }
   }
   info->Proxy->UpdateVTKObjects();

@@ -73,12 +73,14 @@ struct Blanks
 
 Counts EvaluateImage(const steerable::NoiseParameters& parameters, int dimension,
   const Components& vectors, const std::array<double, 3>& spacing,
-  const std::array<double, 3>& origin, double limit, float blank, int threads, Output out)
+  const std::array<double, 3>& origin, int stride, double limit, float blank, int threads,
+  Output out)
 {
   const steerable::SteerableNoise kernel(parameters, dimension);
   const ArrayTuples tuples(vectors);
   const auto reader = MakeVectorReader(tuples, limit);
   steerable::ImageGrid grid;
+  grid.CurvatureStride = std::clamp(stride, 1, +steerable::ImageGrid::MaximumStride);
   grid.Spacing = spacing;
   grid.Origin = origin;
   for (int axis = 0; axis < 3; ++axis)
@@ -292,7 +294,7 @@ NB_MODULE(_kernel, module)
     .def_ro("rest", &FarAbove::Rest)
     .def_ro("fill", &FarAbove::Fill);
   module.def("image", &EvaluateImage, "parameters"_a, "dimension"_a, "vectors"_a, "spacing"_a,
-    "origin"_a, "limit"_a, "blank"_a, "threads"_a, "out"_a);
+    "origin"_a, "stride"_a, "limit"_a, "blank"_a, "threads"_a, "out"_a);
   module.def("points", &EvaluatePoints, "parameters"_a, "dimension"_a, "points"_a, "vectors"_a,
     "normals"_a.none(), "bends"_a.none(), "limit"_a, "blank"_a, "threads"_a, "out"_a);
   module.def("metrics", &EvaluateMetrics, "parameters"_a, "dimension"_a, "vectors"_a,

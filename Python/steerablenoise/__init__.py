@@ -85,8 +85,11 @@ def noise(vectors: ArrayLike | tuple[ArrayLike, ...], *, spacing: float | tuple[
 
 
 def _on_grid(components: list[NDArray[Any]], settings: arguments.Settings, spacing: Any, origin: Any,
-             out: Any = None) -> NDArray[np.float32]:
-    """`components` of a flat grid may be three: the third counts for the length alone."""
+             out: Any = None, stride: int = 1) -> NDArray[np.float32]:
+    """`components` of a flat grid may be three: the third counts for the length alone.
+
+    stride: samples for each one that the components were interpolated from.
+    """
     shape = components[0].shape
     axes = len(shape)
     if axes == 3 and 0 < min(shape) < 2:
@@ -106,8 +109,8 @@ def _on_grid(components: list[NDArray[Any]], settings: arguments.Settings, spaci
     if out.size:
         if axes == 2:
             components = [component[np.newaxis] for component in components]
-        counts = _kernel.image(parameters, axes, components, spacing, origin, settings.limit(components),
-                               settings.blank, settings.threads, out.reshape(-1))
+        counts = _kernel.image(parameters, axes, components, spacing, origin, stride,
+                               settings.limit(components), settings.blank, settings.threads, out.reshape(-1))
         arguments.tell(counts, out.size)
     return out
 

@@ -32,6 +32,6 @@ CMAKE_BUILD_PARALLEL_LEVEL=2 "$scratch/build/bin/python" -m build --outdir "$scr
 wheel=$(echo "$scratch"/dist/*.whl)
 export STEERABLENOISE_WHEEL=$wheel
 
-environment newest "$wheel" pytest
+environment newest "$wheel[matplotlib]" pytest
 cd "$scratch" # not where the sources could be imported
 newest/bin/python -m pytest -q -p no:cacheprovider "$source/Python/tests"

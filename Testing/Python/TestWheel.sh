@@ -32,6 +32,13 @@ CMAKE_BUILD_PARALLEL_LEVEL=2 "$scratch/build/bin/python" -m build --outdir "$scr
 wheel=$(echo "$scratch"/dist/*.whl)
 export STEERABLENOISE_WHEEL=$wheel
 
-environment newest "$wheel[matplotlib]" pytest
+# The newest of everything, and the oldest PyVista that has accessors, with an old VTK where this Python has one.
+environment newest "$wheel[matplotlib,pyvista]" pytest
+oldest=(pyvista==0.48.0)
+if "$python" -c 'import sys; sys.exit(sys.version_info >= (3, 13))'; then
+  oldest+=(vtk==9.3.1)
+fi
+environment oldest "$wheel" "${oldest[@]}" pytest
 cd "$scratch" # not where the sources could be imported
 newest/bin/python -m pytest -q -p no:cacheprovider "$source/Python/tests"
+oldest/bin/python -m pytest -q -p no:cacheprovider "$source/Python/tests/test_pyvista.py"

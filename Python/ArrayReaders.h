@@ -12,7 +12,6 @@
 #include <nanobind/ndarray.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -25,20 +24,22 @@ using Component = nanobind::ndarray<nanobind::ro, nanobind::ndim<3>, nanobind::d
 /// 2 (the third is 0) or 3 components of one shape and one type, float or double.
 using Components = std::vector<Component>;
 
-/// Tuples of 3 doubles, x fastest.
+/// Tuples of 3, x fastest.
 class ArrayTuples
 {
 public:
   explicit ArrayTuples(const Components& components)
-    : Count(std::min<std::size_t>(components.size(), 3))
-    , AreFloats(components[0].dtype() == nanobind::dtype<float>())
+    : AreFloats(components[0].dtype() == nanobind::dtype<float>())
   {
-    for (std::size_t c = 0; c < this->Count; ++c)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+    {
+      this->Shape[axis] = components[0].shape(axis);
+    }
+    for (std::size_t c = 0; c < std::min<std::size_t>(components.size(), 3); ++c)
     {
       this->Data[c] = components[c].data();
       for (std::size_t axis = 0; axis < 3; ++axis)
       {
-        this->Shape[axis] = components[c].shape(axis);
         this->Stride[c][axis] = components[c].stride(axis);
       }
     }
@@ -46,21 +47,33 @@ public:
 
   std::size_t GetNumberOfTuples() const { return this->Shape[0] * this->Shape[1] * this->Shape[2]; }
 
-  void Read(std::size_t first, std::size_t count, double* tuples) const
+  /// Visits the tuples [first, first + count) as visit(index, const double (&tuple)[3]).
+  template <typename Visit>
+  void ForEach(std::size_t first, std::size_t count, Visit&& visit) const
   {
-    this->AreFloats ? this->ReadAs<float>(first, count, tuples) : this->ReadAs<double>(first, count, tuples);
+    this->AreFloats ? this->ForEachOf<float>(first, count, visit)
+                    : this->ForEachOf<double>(first, count, visit);
   }
+
+  /// Whether any component of the rows [begin, end) is at least so large; NaN is not.
+  bool AnyFrom(std::size_t begin, std::size_t end, double least) const
+  {
+    return this->AreFloats ? this->AnyFromOf(begin, end, static_cast<float>(least))
+                           : this->AnyFromOf(begin, end, least);
+  }
+
+  std::size_t GetNumberOfRows() const { return this->Shape[0] * this->Shape[1]; }
 
   /// The tuples where they lie, if they are floats as the kernel takes them; else null.
   const float* GetFloats() const
   {
     const auto* first = static_cast<const float*>(this->Data[0]);
-    bool together = this->AreFloats && this->Count == 3;
-    for (std::size_t c = 0; together && c < 3; ++c)
+    const auto nx = static_cast<std::int64_t>(this->Shape[2]);
+    const std::int64_t wanted[3] = { 3 * nx * static_cast<std::int64_t>(this->Shape[1]), 3 * nx, 3 };
+    bool together = this->AreFloats;
+    for (std::size_t c = 0; c < 3; ++c)
     {
-      const auto nx = static_cast<std::int64_t>(this->Shape[2]);
-      const std::int64_t wanted[3] = { 3 * nx * static_cast<std::int64_t>(this->Shape[1]), 3 * nx, 3 };
-      together = static_cast<const float*>(this->Data[c]) == first + c;
+      together = together && static_cast<const float*>(this->Data[c]) == first + c;
       for (std::size_t axis = 0; axis < 3; ++axis)
       {
         together = together && (this->Shape[axis] == 1 || this->Stride[c][axis] == wanted[axis]);
@@ -71,68 +84,73 @@ public:
 
 private:
   template <typename T>
-  void ReadAs(std::size_t first, std::size_t count, double* tuples) const
+  const T* GetRow(int c, std::size_t row) const
+  {
+    return static_cast<const T*>(this->Data[c]) +
+      static_cast<std::int64_t>(row / this->Shape[1]) * this->Stride[c][0] +
+      static_cast<std::int64_t>(row % this->Shape[1]) * this->Stride[c][1];
+  }
+
+  template <typename T>
+  bool AnyFromOf(std::size_t begin, std::size_t end, T least) const
+  {
+    bool any = false;
+    for (std::size_t row = begin; row < end && !any; ++row)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        const T* values = this->GetRow<T>(c, row);
+        const std::int64_t step = this->Stride[c][2];
+        // Without a branch, which the compiler turns into SIMD.
+        for (std::int64_t i = 0, size = step ? static_cast<std::int64_t>(this->Shape[2]) : 1; i < size; ++i)
+        {
+          any |= std::abs(values[i * step]) >= least;
+        }
+      }
+    }
+    return any;
+  }
+
+  template <typename T, typename Visit>
+  void ForEachOf(std::size_t first, std::size_t count, Visit& visit) const
   {
     const std::size_t nx = this->Shape[2];
-    const std::size_t ny = this->Shape[1];
     while (count > 0)
     {
       // As much of a row as is wanted.
       const std::size_t x = first % nx;
       const std::size_t size = std::min(count, nx - x);
-      for (std::size_t c = 0; c < 3; ++c)
+      const T* from[3];
+      for (int c = 0; c < 3; ++c)
       {
-        if (c >= this->Count)
-        {
-          for (std::size_t i = 0; i < size; ++i)
-          {
-            tuples[3 * i + c] = 0.0;
-          }
-          continue;
-        }
-        const auto& stride = this->Stride[c];
-        const T* from = static_cast<const T*>(this->Data[c]) +
-          static_cast<std::int64_t>(first / nx / ny) * stride[0] +
-          static_cast<std::int64_t>(first / nx % ny) * stride[1];
-        for (std::size_t i = 0; i < size; ++i)
-        {
-          tuples[3 * i + c] = from[static_cast<std::int64_t>(x + i) * stride[2]];
-        }
+        from[c] = this->GetRow<T>(c, first / nx) + static_cast<std::int64_t>(x) * this->Stride[c][2];
+      }
+      const std::int64_t step[3] = { this->Stride[0][2], this->Stride[1][2], this->Stride[2][2] };
+      for (std::size_t i = 0; i < size; ++i)
+      {
+        const auto at = static_cast<std::int64_t>(i);
+        const double tuple[3] = { static_cast<double>(from[0][at * step[0]]),
+          static_cast<double>(from[1][at * step[1]]), static_cast<double>(from[2][at * step[2]]) };
+        visit(first + i, tuple);
       }
       first += size;
       count -= size;
-      tuples += 3 * size;
     }
   }
 
-  std::size_t Count;
+  static constexpr double Zero = 0.0; // as a float too
+
   bool AreFloats;
-  const void* Data[3] = {};
+  /// What is not there is 0 everywhere.
+  const void* Data[3] = { &Zero, &Zero, &Zero };
   std::size_t Shape[3] = {};
-  std::array<std::int64_t, 3> Stride[3] = {};
+  std::int64_t Stride[3][3] = {};
 };
 
 /// Length of a vector, of the largest number if it is too long to be squared.
-inline double LengthOf(const double* v)
+inline double LengthOf(const double (&v)[3])
 {
   return steerable::LengthFromSquares(v[0] * v[0] + v[1] * v[1] + v[2] * v[2], v, 3);
-}
-
-/// Visits the tuples [first, first + count) as visit(index, tuple).
-template <typename Visit>
-void ForEachTuple(const ArrayTuples& tuples, std::size_t first, std::size_t count, Visit&& visit)
-{
-  constexpr std::size_t chunk = 512;
-  double values[3 * chunk];
-  for (const std::size_t end = first + count; first < end; first += chunk)
-  {
-    const std::size_t size = std::min(chunk, end - first);
-    tuples.Read(first, size, values);
-    for (std::size_t i = 0; i < size; ++i)
-    {
-      visit(first + i, values + 3 * i);
-    }
-  }
 }
 
 /// Vectors as floats; those longer than `limit` are NaN, so that they count for nothing.
@@ -148,13 +166,14 @@ public:
 
   const float* Read(std::size_t first, std::size_t count, float* scratch) const override
   {
-    ForEachTuple(this->Tuples, first, count,
-      [&](std::size_t i, const double* vector)
+    const bool limited = std::isfinite(this->Limit);
+    this->Tuples.ForEach(first, count,
+      [&](std::size_t i, const double (&vector)[3])
       {
         float* to = scratch + 3 * (i - first);
         // Short vectors and long ones are scaled; these need not be.
         const double sum = std::abs(vector[0]) + std::abs(vector[1]) + std::abs(vector[2]);
-        if (std::isfinite(this->Limit) && LengthOf(vector) > this->Limit)
+        if (limited && LengthOf(vector) > this->Limit)
         {
           std::fill_n(to, 3, std::numeric_limits<float>::quiet_NaN());
         }
@@ -198,7 +217,8 @@ public:
   }
   const double* Read(std::size_t first, std::size_t count, double* scratch) const override
   {
-    this->Tuples.Read(first, count, scratch);
+    this->Tuples.ForEach(first, count,
+      [&](std::size_t i, const double (&place)[3]) { std::copy_n(place, 3, scratch + 3 * (i - first)); });
     return scratch;
   }
 

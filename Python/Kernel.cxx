@@ -17,9 +17,13 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <cstring>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <tuple>
 
 namespace nb = nanobind;
@@ -48,8 +52,8 @@ struct Blanks
     std::uint64_t tooLong = 0;
     if (counts.Degenerate > 0 || counts.Stagnant > 0)
     {
-      ForEachTuple(this->Vectors, begin, end - begin,
-        [&](std::size_t i, const double* vector)
+      this->Vectors.ForEach(begin, end - begin,
+        [&](std::size_t i, const double (&vector)[3])
         {
           const bool known = std::isfinite(vector[0]) && std::isfinite(vector[1]) &&
             std::isfinite(vector[2]) && (vector[0] != 0.0 || vector[1] != 0.0 || vector[2] != 0.0);
@@ -177,6 +181,44 @@ void EvaluateMetrics(const steerable::NoiseParameters& parameters, int dimension
     });
 }
 
+/// Powers of 4 that squares of lengths lie in: quick to find, and enough to rule out fill values.
+struct OccupiedPowers
+{
+  std::array<bool, 1024> Occupied = {};
+
+  void Add(const double (&vector)[3])
+  {
+    const double square = vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2];
+    std::uint64_t bits;
+    std::memcpy(&bits, &square, sizeof(bits));
+    // Squares that are too small are among the first, those that are too large or not finite among the last.
+    const bool any = vector[0] != 0.0 || vector[1] != 0.0 || vector[2] != 0.0;
+    this->Occupied[(bits >> 53) % this->Occupied.size()] |= any; // without the sign of a NaN
+  }
+
+  OccupiedPowers& operator+=(const OccupiedPowers& more)
+  {
+    for (std::size_t i = 0; i < this->Occupied.size(); ++i)
+    {
+      this->Occupied[i] |= more.Occupied[i];
+    }
+    return *this;
+  }
+
+  /// Whether a length can be 16 times as long as another one with none between, or was too long to be seen.
+  bool HaveGap() const
+  {
+    bool gap = this->Occupied.back();
+    std::size_t last = this->Occupied.size();
+    for (std::size_t i = 0; i < this->Occupied.size(); ++i)
+    {
+      gap = gap || (this->Occupied[i] && last < i && i - last >= 4);
+      last = this->Occupied[i] ? i : last;
+    }
+    return gap;
+  }
+};
+
 /// Vectors far longer than all others, and the largest of their components; null if there are none.
 using Overlong = std::optional<std::tuple<steerable::FarAbove, double>>;
 
@@ -185,29 +227,33 @@ Overlong FindOverlong(const Components& vectors, int threads)
   const ArrayTuples tuples(vectors);
   const nb::gil_scoped_release noGil;
   std::mutex mutex;
-  // A quick look first: hardly any data have them.
+  // Quick looks first: hardly any data have them.
   std::atomic<bool> any{ false };
-  ForEachPart(tuples.GetNumberOfTuples(), SamplesAtATime, threads,
+  const std::size_t rows = SamplesAtATime / vectors[0].shape(2) + 1;
+  ForEachPart(tuples.GetNumberOfRows(), rows, threads,
     [&](std::size_t begin, std::size_t end)
-    {
-      double largest = 0.0;
-      ForEachTuple(tuples, begin, any ? 0 : end - begin,
-        [&](std::size_t, const double* vector)
-        {
-          for (int c = 0; c < 3; ++c)
-          {
-            largest = std::abs(vector[c]) > largest ? std::abs(vector[c]) : largest;
-          }
-        });
-      any = any || largest >= steerable::LeastFillLength / 3.0;
-    });
-  steerable::LengthOctaves lengths;
+    { any = any || tuples.AnyFrom(begin, end, steerable::LeastFillLength / 3.0); });
+  OccupiedPowers powers;
   ForEachPart(any ? tuples.GetNumberOfTuples() : 0, SamplesAtATime, threads,
     [&](std::size_t begin, std::size_t end)
     {
+      OccupiedPowers here;
+      tuples.ForEach(begin, end - begin,
+        [&](std::size_t, const double (&vector)[3]) { here.Add(vector); });
+      const std::lock_guard<std::mutex> lock(mutex);
+      powers += here;
+    });
+  if (!powers.HaveGap())
+  {
+    return std::nullopt;
+  }
+  steerable::LengthOctaves lengths;
+  ForEachPart(tuples.GetNumberOfTuples(), SamplesAtATime, threads,
+    [&](std::size_t begin, std::size_t end)
+    {
       steerable::LengthOctaves here;
-      ForEachTuple(tuples, begin, end - begin,
-        [&](std::size_t, const double* vector) { here.Add(LengthOf(vector)); });
+      tuples.ForEach(begin, end - begin,
+        [&](std::size_t, const double (&vector)[3]) { here.Add(LengthOf(vector)); });
       const std::lock_guard<std::mutex> lock(mutex);
       lengths += here;
     });
@@ -217,8 +263,8 @@ Overlong FindOverlong(const Components& vectors, int threads)
     return std::nullopt;
   }
   double value = 0.0;
-  ForEachTuple(tuples, 0, tuples.GetNumberOfTuples(),
-    [&](std::size_t, const double* vector)
+  tuples.ForEach(0, tuples.GetNumberOfTuples(),
+    [&](std::size_t, const double (&vector)[3])
     {
       const double length = LengthOf(vector);
       for (int c = 0; c < 3 && length > found.Rest && std::isfinite(length); ++c)

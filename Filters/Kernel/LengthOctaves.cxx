@@ -3,7 +3,8 @@
 #include "LengthOctaves.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <cstring>
 
 namespace steerable
 {
@@ -16,11 +17,14 @@ constexpr double Alike = 1.75;
 
 void LengthOctaves::Add(double length)
 {
-  if (!(length > 0.0) || !std::isfinite(length))
+  std::uint64_t bits;
+  std::memcpy(&bits, &length, sizeof(bits));
+  const std::uint64_t exponent = bits >> 52;
+  if (!(length > 0.0) || exponent >= this->Octaves.size())
   {
     return;
   }
-  Octave& octave = this->Octaves[static_cast<std::size_t>(std::ilogb(length) - Lowest)];
+  Octave& octave = this->Octaves[exponent];
   octave.Least = octave.Count > 0.0 ? std::min(octave.Least, length) : length;
   octave.Longest = std::max(octave.Longest, length);
   octave.Count += 1.0;

@@ -48,9 +48,8 @@ public:
     double Least = 0.0;
     double Longest = 0.0;
   };
-  static constexpr int Lowest = -1074; // of the smallest number
-  /// One for each power of 2, for hosts that combine them themselves.
-  std::array<Octave, 2099> Octaves;
+  /// One for each exponent of a double, for hosts that combine them themselves.
+  std::array<Octave, 2047> Octaves;
 };
 } // namespace steerable
 

@@ -128,6 +128,14 @@ def test_far_vectors_that_are_no_fill_values_stay():
         assert noise(field)[5, 5] != 0.0
 
 
+def test_fill_values_are_found_beside_negative_nan_and_tiny_vectors():
+    field = vortex() * 1e-150
+    field[0, 0] = -np.nan
+    field[20:30, 40:50] = 1e20
+    with pytest.warns(UserWarning, match="100 samples hold"):
+        assert not noise(field)[20:30, 40:50].any()
+
+
 def test_data_without_directions_and_coarse_data_are_told_of():
     with pytest.warns(UserWarning, match="4800 of 4800 samples have no direction"):
         noise(np.zeros((60, 80, 2)))

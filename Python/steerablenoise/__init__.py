@@ -85,7 +85,7 @@ def noise(vectors: ArrayLike | tuple[ArrayLike, ...], *, spacing: float | tuple[
 
 
 def _on_grid(components: list[NDArray[Any]], settings: arguments.Settings, spacing: Any, origin: Any,
-             out: Any = None, stride: int = 1) -> NDArray[np.float32]:
+             out: NDArray[np.float32] | None = None, stride: int = 1) -> NDArray[np.float32]:
     """`components` of a flat grid may be three: the third counts for the length alone.
 
     stride: samples for each one that the components were interpolated from.
@@ -146,10 +146,11 @@ def noise_at(points: ArrayLike, vectors: ArrayLike, normals: ArrayLike | None = 
     settings = arguments.Settings(**options)
     out = arguments.output(out, points.shape[:1], points, vectors, normals, bends)
     if out.size:
-        parts = [part if part is None else arguments.row_components(part)
-                 for part in (points, vectors, normals, bends)]
-        counts = _kernel.points(settings.for_axes(axes), axes, *parts, settings.limit(parts[1]), settings.blank,
-                                settings.threads, out)
+        steering = arguments.row_components(vectors)
+        counts = _kernel.points(settings.for_axes(axes), axes, arguments.row_components(points), steering,
+                                normals if normals is None else arguments.row_components(normals),
+                                bends if bends is None else arguments.row_components(bends),
+                                settings.limit(steering), settings.blank, settings.threads, out)
         arguments.tell(counts, out.size)
     return out
 

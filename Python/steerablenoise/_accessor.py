@@ -28,7 +28,7 @@ class SteerableAccessor:
         self._mesh = mesh
 
     def noise(self, vectors: str | None = None, *, feature_size: float | None = None, name: str = "SteerableNoise",
-              **options: Unpack[arguments.Options]) -> Any:
+              **options: Unpack[arguments.MoreOptions]) -> Any:
         """A shallow copy of the mesh with noise as its active scalars, beside all that it had.
 
         vectors: name of an array with 2 or 3 components on points or cells; None: the active vectors. 2 components lie
@@ -75,7 +75,7 @@ class SteerableAccessor:
     def texture(self, vectors: str | None = None, *, size: int = 1024, feature_size: float | None = None,
                 color: Any = "white", scalars: str | None = None, cmap: Any = "viridis",
                 clim: tuple[float, float] | None = None, intensity: float = 0.6,
-                **options: Unpack[arguments.Options]) -> tuple[pyvista.PolyData, pyvista.Texture]:
+                **options: Unpack[arguments.MoreOptions]) -> tuple[pyvista.PolyData, pyvista.Texture]:
         """The surface with texture coordinates, and a texture of noise over colour, finer than the mesh.
 
         surface, texture = mesh.steerable.texture("U"); plotter.add_mesh(surface, texture=texture)
@@ -123,11 +123,11 @@ class SteerableAccessor:
         under = np.asarray(at["vtkValidPointMask"]).astype(bool)
         texel = math.sqrt(surface.area / max(np.count_nonzero(under), 1))
         wanted = feature_size or max(_size_in_picture(surface.bounds), _snap(4.0 * texel))
+        changed: dict[str, Any] = {**options, "feature_size": wanted, "mask_upper_threshold": arguments.LARGEST}
         values = np.zeros(rows * columns, np.float32)
         values[under] = noise_at(
-            at["place"][under], at["vector"][under], *(at[key][under] if key in at.point_data else None
-                                                       for key in ("normal", "bend")),
-            **{**options, "feature_size": wanted, "mask_upper_threshold": arguments.LARGEST})
+            at["place"][under], at["vector"][under], at["normal"][under] if "normal" in at.point_data else None,
+            at["bend"][under] if "bend" in at.point_data else None, **changed)
         if scalars is None:
             rgb = np.broadcast_to(pyvista.Color(color).float_rgb, (rows * columns, 3))
         else:
@@ -139,7 +139,8 @@ class SteerableAccessor:
         colors = shade(rgb, np.nan_to_num(values), intensity).reshape(rows, columns, 3)
         colors = _spread(colors, under.reshape(rows, columns))
         # PyVista's pictures have their first row on top.
-        return surface, pyvista.Texture(np.round(255.0 * colors[::-1]).astype(np.uint8))
+        picture = np.round(255.0 * colors[::-1]).astype(np.uint8)
+        return surface, pyvista.Texture(picture)  # type: ignore[no-untyped-call,unused-ignore]
 
 
 def _leaves(mesh: Any) -> list[Any]:
@@ -219,7 +220,7 @@ def _dimension(mesh: Any) -> int:
     if not mesh.n_cells:
         return 0
     _, examples = np.unique(mesh.celltypes, return_index=True)
-    return max(mesh.GetCell(int(i)).GetCellDimension() for i in examples)
+    return int(max(mesh.GetCell(int(i)).GetCellDimension() for i in examples))
 
 
 def _evaluate(mesh: Any, vectors: NDArray[Any], cells: bool, options: dict[str, Any]) -> NDArray[np.float32]:
@@ -254,7 +255,7 @@ def _on_image(mesh: Any, vectors: NDArray[Any], cells: bool, options: dict[str, 
     return _on_grid(components, arguments.Settings(**options), spacing, start[thick]).ravel()
 
 
-def _surface(mesh: Any) -> pyvista.PolyData:
+def _surface(mesh: Any) -> Any:
     if isinstance(mesh, pyvista.PolyData):
         return mesh.copy(deep=False)
     return mesh.extract_surface(algorithm=None)
@@ -302,7 +303,8 @@ def _bends(mesh: Any, vectors: NDArray[Any], normals: NDArray[Any] | None, cells
     gradient.Update()
     output = pyvista.wrap(gradient.GetOutput())
     slopes = np.asarray((output.cell_data if cells else output.point_data)["gradient"]).reshape(-1, 3, 3)
-    return np.nan_to_num(np.einsum("nij,nj->ni", slopes, unit))
+    bends: NDArray[Any] = np.nan_to_num(np.einsum("nij,nj->ni", slopes, unit))
+    return bends
 
 
 def _to_points(surface: pyvista.PolyData, values: NDArray[Any]) -> NDArray[Any]:

@@ -17,10 +17,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
     from typing_extensions import TypedDict
 
-    class Options(TypedDict, total=False):
-        """The keywords of `noise` that every function here passes on."""
+    class MoreOptions(TypedDict, total=False):
+        """The keywords of `noise` that every function passes on."""
 
-        feature_size: float
         streak_length: float
         seed: int
         follow_curvature: bool
@@ -42,19 +41,22 @@ if TYPE_CHECKING:
         period: int | tuple[int, ...]
         threads: int | None
 
+    class Options(MoreOptions, total=False):
+        feature_size: float
+
 LARGEST = float(np.finfo(np.float64).max)
 
 
 def numbers(name: str, values: Any) -> NDArray[Any]:
     """As float32 or float64 in native byte order, masked ones as NaN; a copy only where it must be."""
-    array = np.ma.asanyarray(values)
+    array: Any = np.ma.asanyarray(values)  # type: ignore[no-untyped-call,unused-ignore]
     if array.dtype.kind not in "fiub":
         raise ValueError(f"{name} of shape {array.shape} holds {array.dtype}; it must be real numbers, "
                          "such as float32 or float64.")
     double = array.dtype.kind != "f" or array.dtype.itemsize > 4
     array = array.astype(np.float64 if double else np.float32, copy=False)
-    array = array.filled(np.nan) if isinstance(array, np.ma.MaskedArray) else np.asarray(array)
-    return array if all(s % array.itemsize == 0 for s in array.strides) and array.flags.aligned else array.copy()
+    plain: NDArray[Any] = array.filled(np.nan) if isinstance(array, np.ma.MaskedArray) else np.asarray(array)
+    return plain if all(s % plain.itemsize == 0 for s in plain.strides) and plain.flags.aligned else plain.copy()
 
 
 def grid_components(vectors: Any) -> list[NDArray[Any]]:
@@ -129,7 +131,7 @@ def thread_count(threads: int | None) -> int:
 
 
 class Settings:
-    """What `Options` say, checked."""
+    """What options say, checked."""
 
     def __init__(self, *, feature_size: float = 8.0, streak_length: float = 6.0, seed: int = 0,
                  follow_curvature: bool = True, phase: float | None = None, speed: float = 1.0,

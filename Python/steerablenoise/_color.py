@@ -14,4 +14,4 @@ def shade(rgb: np.ndarray[Any, Any], noise: np.ndarray[Any, Any], intensity: flo
     Colours of middle lightness stay what they are in the mean. intensity: 0 (no noise) to 1 (up to black and white).
     """
     share = np.clip(intensity / 2.0 * noise, -intensity, intensity)[..., np.newaxis]
-    return rgb + np.where(share < 0.0, rgb, 1.0 - rgb) * share
+    return np.asarray(rgb + np.where(share < 0.0, rgb, 1.0 - rgb) * share)

@@ -30,7 +30,7 @@ def flow(ax: Axes, x: ArrayLike, y: ArrayLike, u: ArrayLike, v: ArrayLike, *,
          color: ArrayLike | ColorType | None = None, cmap: str | Colormap | None = None,
          norm: str | Normalize | None = None, vmin: float | None = None, vmax: float | None = None,
          feature_size: float = 4.0, intensity: float = 0.6, alpha: float | None = None, zorder: float = 0.0,
-         **options: Unpack[arguments.Options]) -> FlowImage:
+         **options: Unpack[arguments.MoreOptions]) -> FlowImage:
     """Draw the flow (u, v) into `ax` as streaks over colour, sharp at every zoom and resolution.
 
     x, y: where the rows and columns lie, in data units: 1-D, evenly spaced or not, or as numpy.meshgrid makes them.
@@ -66,7 +66,7 @@ class FlowImage(AxesImage):
     """What `flow` returns: an image that makes its noise at the pixels it is drawn to."""
 
     def __init__(self, ax: Axes, x: ArrayLike, y: ArrayLike, u: ArrayLike, v: ArrayLike, *, color: Any, cmap: Any,
-                 norm: Any, feature_size: float, intensity: float, **options: Unpack[arguments.Options]) -> None:
+                 norm: Any, feature_size: float, intensity: float, **options: Unpack[arguments.MoreOptions]) -> None:
         parts = [arguments.numbers("u", u), arguments.numbers("v", v)]
         shape = parts[0].shape
         if len(shape) != 2 or parts[1].shape != shape or min(shape) < 2:
@@ -96,7 +96,7 @@ class FlowImage(AxesImage):
             self._fields[:2] = np.where(np.hypot(*self._fields[:2]) > limit, np.nan, self._fields[:2])
         (left, right), (bottom, top) = ((place[0], place[-1]) for place in self._places)
         super().__init__(ax, cmap=cmap, norm=norm, extent=(left, right, bottom, top), origin="lower")
-        self.set_data(np.ma.masked_invalid(self._fields[2]))
+        self.set_data(np.ma.masked_invalid(self._fields[2]))  # type: ignore[no-untyped-call,unused-ignore]
 
     def set_phase(self, phase: float | None) -> None:
         """Another picture of the loop of motion, 0 to 1, for an animation; None: still noise."""
@@ -135,14 +135,13 @@ class FlowImage(AxesImage):
         up = v * ((y1 - y0) / (self._places[1][-1] - self._places[1][0]))
         length = np.hypot(across, up)
         scale = np.divide(np.hypot(u, v), length, out=np.zeros_like(length), where=length > 0.0)
-        size = max(self._feature_size * self.get_figure().dpi / 72.0 * magnification, FEWEST_PIXELS)
+        size = max(self._feature_size * self.axes.figure.dpi / 72.0 * magnification, FEWEST_PIXELS)
         steps = [abs((end - start) * magnification) / (len(place) - 1)
                  for place, start, end in zip(self._places, (x0, y0), (x1, y1))]
-        settings = arguments.Settings(**{**self._options, "feature_size": size,
-                                         "mask_upper_threshold": arguments.LARGEST})
+        changed: dict[str, Any] = {**self._options, "feature_size": size, "mask_upper_threshold": arguments.LARGEST}
         known = np.isfinite(u) & np.isfinite(v) & np.isfinite(values)
         # The lattice hangs on the data, so that streaks go with them when the view is moved.
-        shown = _on_grid([across * scale, up * scale], settings, 1.0, (magnification * (at[0][0] - x0), magnification * (at[1][0] - y0)),
+        shown = _on_grid([across * scale, up * scale], arguments.Settings(**changed), 1.0, (magnification * (at[0][0] - x0), magnification * (at[1][0] - y0)),
                          stride=int(round(min(steps))))
         if self._single is None:
             rgb = self.to_rgba(np.where(known, values, 0.0))[..., :3]

@@ -33,12 +33,16 @@ wheel=$(echo "$scratch"/dist/*.whl)
 export STEERABLENOISE_WHEEL=$wheel
 
 # The newest of everything, and the oldest PyVista that has accessors, with an old VTK where this Python has one.
-environment newest "$wheel[matplotlib,pyvista]" pytest
+environment newest "$wheel[matplotlib,pyvista]" pytest mypy auditwheel
 oldest=(pyvista==0.48.0)
 if "$python" -c 'import sys; sys.exit(sys.version_info >= (3, 13))'; then
   oldest+=(vtk==9.3.1)
 fi
 environment oldest "$wheel" "${oldest[@]}" pytest
+# On Linux: what it needs of the system, and on which systems that is there.
+if [ "$(uname)" = Linux ]; then
+  "$scratch/newest/bin/auditwheel" show "$wheel"
+fi
 cd "$scratch" # not where the sources could be imported
 newest/bin/python -m pytest -q -p no:cacheprovider "$source/Python/tests"
 oldest/bin/python -m pytest -q -p no:cacheprovider "$source/Python/tests/test_pyvista.py"

@@ -42,7 +42,7 @@ def noise_of(field, threads, runs=RUNS):
 
 def grain_of(shape, sigma):
     white = smooth(numpy.random.default_rng(1).standard_normal(shape), sigma)
-    return (0.5 + 0.1 * white / white.std()).astype(numpy.float32)
+    return numpy.clip(0.5 + 0.1 * white / white.std(), 0.01, 1.0).astype(numpy.float32)  # rLIC takes none below 0
 
 
 def rlic_of(field, sigma, runs=RUNS):

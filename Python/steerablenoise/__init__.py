@@ -25,6 +25,13 @@ if TYPE_CHECKING:
 __all__ = ["metric", "noise", "noise_at", "subband_tiles"]
 
 
+def __getattr__(name: str) -> Any:
+    if name.startswith("vtk"):
+        raise ImportError(f"{name} is not in the wheel for NumPy, but in the package of the same name that the VTK module "
+                          "builds. Run pvpython, or the Python of that VTK, with the folder of that package on PYTHONPATH.")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
 def noise(vectors: ArrayLike | tuple[ArrayLike, ...], *, spacing: float | tuple[float, ...] = 1.0,
           origin: float | tuple[float, ...] = 0.0, feature_size: float = 8.0, streak_length: float = 6.0,
           seed: int = 0, follow_curvature: bool = True, phase: float | None = None, speed: float = 1.0,

@@ -56,6 +56,13 @@ def test_import_brings_numpy_and_no_more():
     assert not brought & {"vtk", "vtkmodules", "pyvista", "matplotlib", "typing_extensions"}
 
 
+def test_vtk_classes_are_said_to_be_elsewhere():
+    with pytest.raises(ImportError, match="vtkSteerableNoiseFilter is not in the wheel.*pvpython"):
+        from steerablenoise import vtkSteerableNoiseFilter  # noqa: F401
+    with pytest.raises(ImportError, match="noises"):
+        from steerablenoise import noises  # noqa: F401
+
+
 def test_the_package_tells_its_types():
     mypy = pytest.importorskip("mypy.api")
     program = """

@@ -172,7 +172,8 @@ def test_subband_tiles_add_up_to_noise_without_a_direction():
 
 def test_other_threads_run_meanwhile():
     # The other one waits for the call to begin and then marks the end of what has yet to be written. Nobody takes the
-    # GIL from a thread that has it, so without its release the mark would come after the call, and last.
+    # GIL from a thread that has it, so without its release the mark would come after the call, and last. Vectors are not
+    # looked through before, which releases it too.
     interval = sys.getswitchinterval()
     sys.setswitchinterval(1000.0)
     field = np.tile(vortex(), (8, 8, 1))
@@ -188,7 +189,7 @@ def test_other_threads_run_meanwhile():
     other.start()
     try:
         go.set()
-        noise(field, octaves=4, threads=1, out=out)
+        noise(field, feature_size=32, octaves=4, threads=1, mask_upper_threshold=1e300, out=out)
     finally:
         sys.setswitchinterval(interval)
         other.join()

@@ -26,6 +26,10 @@ __all__ = ["metric", "noise", "noise_at", "subband_tiles"]
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("steerablenoise")
     if name.startswith("vtk"):
         raise ImportError(f"{name} is not in the wheel for NumPy, but in the package of the same name that the VTK module "
                           "builds. Run pvpython, or the Python of that VTK, with the folder of that package on PYTHONPATH.")

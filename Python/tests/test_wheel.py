@@ -29,6 +29,12 @@ def test_one_wheel_for_python_3_12_and_newer(wheel):
         assert tags.startswith("cp3%d-cp3%d-" % (sys.version_info[1],) * 2)
 
 
+def test_the_version_is_that_of_the_project(wheel):
+    import steerablenoise
+
+    assert f"steerablenoise-{steerablenoise.__version__}-" in os.path.basename(wheel.filename)
+
+
 def test_types_and_licences_are_in_it_and_it_is_small(wheel):
     names = wheel.namelist()
     assert {"steerablenoise/py.typed", "steerablenoise/_kernel.pyi"} <= set(names)

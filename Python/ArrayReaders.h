@@ -69,7 +69,8 @@ public:
   {
     const auto* first = static_cast<const float*>(this->Data[0]);
     const auto nx = static_cast<std::int64_t>(this->Shape[2]);
-    const std::int64_t wanted[3] = { 3 * nx * static_cast<std::int64_t>(this->Shape[1]), 3 * nx, 3 };
+    const auto ny = static_cast<std::int64_t>(this->Shape[1]);
+    const std::int64_t wanted[3] = { 3 * nx * ny, 3 * nx, 3 };
     bool together = this->AreFloats;
     for (std::size_t c = 0; c < 3; ++c)
     {
@@ -101,8 +102,9 @@ private:
       {
         const T* values = this->GetRow<T>(c, row);
         const std::int64_t step = this->Stride[c][2];
+        const std::int64_t size = step ? static_cast<std::int64_t>(this->Shape[2]) : 1;
         // Without a branch, which the compiler turns into SIMD.
-        for (std::int64_t i = 0, size = step ? static_cast<std::int64_t>(this->Shape[2]) : 1; i < size; ++i)
+        for (std::int64_t i = 0; i < size; ++i)
         {
           any |= std::abs(values[i * step]) >= least;
         }
@@ -123,7 +125,8 @@ private:
       const T* from[3];
       for (int c = 0; c < 3; ++c)
       {
-        from[c] = this->GetRow<T>(c, first / nx) + static_cast<std::int64_t>(x) * this->Stride[c][2];
+        from[c] =
+          this->GetRow<T>(c, first / nx) + static_cast<std::int64_t>(x) * this->Stride[c][2];
       }
       const std::int64_t step[3] = { this->Stride[0][2], this->Stride[1][2], this->Stride[2][2] };
       for (std::size_t i = 0; i < size; ++i)
@@ -218,7 +221,8 @@ public:
   const double* Read(std::size_t first, std::size_t count, double* scratch) const override
   {
     this->Tuples.ForEach(first, count,
-      [&](std::size_t i, const double (&place)[3]) { std::copy_n(place, 3, scratch + 3 * (i - first)); });
+      [&](std::size_t i, const double (&place)[3])
+      { std::copy_n(place, 3, scratch + 3 * (i - first)); });
     return scratch;
   }
 

@@ -191,7 +191,7 @@ struct OccupiedPowers
     const double square = vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2];
     std::uint64_t bits;
     std::memcpy(&bits, &square, sizeof(bits));
-    // Squares that are too small are among the first, those that are too large or not finite among the last.
+    // Squares that are too small are among the first, those too large or not finite among the last.
     const bool any = vector[0] != 0.0 || vector[1] != 0.0 || vector[2] != 0.0;
     this->Occupied[(bits >> 53) % this->Occupied.size()] |= any; // without the sign of a NaN
   }
@@ -205,7 +205,7 @@ struct OccupiedPowers
     return *this;
   }
 
-  /// Whether a length can be 16 times as long as another one with none between, or was too long to be seen.
+  /// Whether a length can be 16 times another one with none between, or was too long to be seen.
   bool HaveGap() const
   {
     bool gap = this->Occupied.back();
@@ -280,7 +280,8 @@ Overlong FindOverlong(const Components& vectors, int threads)
 void MakeTiles(const steerable::SubbandParameters& parameters, Output out)
 {
   parameters.Validate();
-  const std::size_t values = std::size_t(parameters.TileSize) * parameters.TileSize * parameters.Components();
+  const std::size_t texels = std::size_t(parameters.TileSize) * parameters.TileSize;
+  const std::size_t values = texels * parameters.Components();
   if (out.size() != values)
   {
     throw std::invalid_argument("out has the wrong size");

@@ -19,8 +19,9 @@
 #include <vector>
 
 /**
- * Runs `evaluate(begin, end)` over all parts, `grain` of them at a time, with at most `threads` threads of its own.
- * This thread only waits, and asks Python now and then whether the user interrupted it. Call it without the GIL.
+ * Runs `evaluate(begin, end)` over all parts, `grain` of them at a time, with at most `threads` threads
+ * of its own. This thread only waits, and asks Python now and then whether the user interrupted it. Call
+ * it without the GIL.
  */
 template <typename Evaluate>
 void ForEachPart(std::size_t parts, std::size_t grain, int threads, Evaluate&& evaluate)

@@ -74,7 +74,9 @@ FarAbove LengthOctaves::FindFarAbove() const
       group.Fill = group.Longest <= Alike * least;
       if (!group.Fill)
       {
-        return found.Count > 0.0 ? found : FarAbove{ group.Count, group.Longest, octave->Longest, false };
+        return found.Count > 0.0
+          ? found
+          : FarAbove{ group.Count, group.Longest, octave->Longest, false };
       }
       fills += group.Count;
       found = { fills, found.Count > 0.0 ? found.Longest : group.Longest, octave->Longest, true };

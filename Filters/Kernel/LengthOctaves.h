@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * How long vectors are: the longest, and whether some of them are numbers that stand for missing values.
+ * How long vectors are: the longest, and whether some of them are numbers that stand for missing
+ * values.
  */
 #ifndef LengthOctaves_h
 #define LengthOctaves_h
@@ -25,7 +26,7 @@ struct FarAbove
   bool Fill = false;
 };
 
-/// Counts and ranges of lengths in octaves (factors of 2), which combine by sum, minimum and maximum.
+/// Counts and ranges of lengths in octaves (factors of 2); they combine by sum, minimum and maximum.
 class LengthOctaves
 {
 public:
@@ -37,8 +38,8 @@ public:
   double GetLongest(double limit) const;
 
   /**
-   * Vectors of at least LeastFillLength that are 16 times as long as any other one. Where these are fill values,
-   * and others stand out from what is left, all of them together.
+   * Vectors of at least LeastFillLength that are 16 times as long as any other one. Where these are
+   * fill values, and others stand out from what is left, all of them together.
    */
   FarAbove FindFarAbove() const;
 

@@ -15,11 +15,12 @@ class vtkMultiProcessController;
 
 namespace noise
 {
-/// Whether an array has a number so large that steerable::LengthOctaves can find a vector in it; quick.
+/// Whether an array has a number so large that LengthOctaves can find a vector in it; quick.
 bool MayHoldFarAbove(vtkDataArray* array);
 
 /**
- * Adds the lengths of the tuples that are at most `limit` long and not hidden (one value for each, or empty).
+ * Adds the lengths of the tuples that are at most `limit` long and not hidden (one value for each,
+ * or empty).
  */
 void AddLengths(steerable::LengthOctaves& octaves, vtkDataArray* array,
   const std::vector<unsigned char>& hidden, double limit);

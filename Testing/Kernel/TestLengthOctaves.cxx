@@ -54,7 +54,8 @@ TEST(LengthOctaves, SeveralFillValuesAreOne)
 
 TEST(LengthOctaves, WhatIsNoLengthDoesNotCount)
 {
-  const LengthOctaves octaves = Of({ 0.0, -0.0, Infinity, -1.0, -std::numeric_limits<double>::quiet_NaN(), 1e-310, 3.0 });
+  const double unknown = -std::numeric_limits<double>::quiet_NaN();
+  const LengthOctaves octaves = Of({ 0.0, -0.0, Infinity, -1.0, unknown, 1e-310, 3.0 });
   EXPECT_EQ(octaves.GetLongest(Infinity), 3.0);
   double count = 0.0;
   for (const LengthOctaves::Octave& octave : octaves.Octaves)

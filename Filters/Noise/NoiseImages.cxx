@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseImages.h"
 
+#include "NoiseBounds.h"
 #include "NoiseGhosts.h"
 
 #include "vtkArrayListTemplate.h"
@@ -198,6 +199,47 @@ void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int fac
   }
   outInfo->Set(SDDP::WHOLE_EXTENT(), whole, 6);
   outInfo->Set(vtkDataObject::SPACING(), spacing, 3);
+}
+
+int GetAutomaticMagnification(vtkInformation* inInfo, double featureSize, double fineness)
+{
+  constexpr double mostSamples = 4194304.0;
+  constexpr int mostFactor = 16;
+  int whole[6];
+  double spacing[3] = { 1.0, 1.0, 1.0 };
+  inInfo->Get(SDDP::WHOLE_EXTENT(), whole);
+  if (inInfo->Has(vtkDataObject::SPACING()))
+  {
+    inInfo->Get(vtkDataObject::SPACING(), spacing);
+  }
+  double bounds[6];
+  double farthest = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int cells = whole[2 * axis + 1] - whole[2 * axis];
+    bounds[2 * axis] = 0.0;
+    bounds[2 * axis + 1] = cells * std::abs(spacing[axis]);
+    farthest = cells > 0 ? std::max(farthest, std::abs(spacing[axis])) : farthest;
+  }
+  CommonBounds common;
+  common.Add(bounds);
+  const double size = (featureSize > 0.0 ? featureSize : common.GetFeatureSize(0.0)) / fineness;
+  const double wanted = std::ceil(6.0 * farthest / size);
+  int factor = wanted >= 1.0 ? static_cast<int>(std::min<double>(wanted, mostFactor)) : 1;
+  const auto samples = [&](int by)
+  {
+    double count = 1.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      count *= Magnified(whole[2 * axis + 1] - whole[2 * axis] + 1, by);
+    }
+    return count;
+  };
+  while (factor > 1 && samples(factor) > mostSamples)
+  {
+    --factor;
+  }
+  return factor;
 }
 
 void CheckMemory(const std::vector<vtkImageData*>& images, int factor)

@@ -17,6 +17,12 @@ namespace noise
 /// Whole extent and spacing of an image with `factor` samples for each of the input's.
 void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int factor);
 
+/**
+ * The smallest factor, up to 16, with which a streak of the finest octave, `fineness` times as fine as `featureSize`
+ * (0: automatic), has 6 samples, but no more than 2^22 in all. Only from the whole extent, so the same for all pieces.
+ */
+int GetAutomaticMagnification(vtkInformation* inInfo, double featureSize, double fineness);
+
 /// Throws std::runtime_error if there is no memory for the images with `factor` samples for each of theirs.
 void CheckMemory(const std::vector<vtkImageData*>& images, int factor);
 

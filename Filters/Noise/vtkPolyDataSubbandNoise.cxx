@@ -717,19 +717,25 @@ int vtkPolyDataSubbandNoise::RequestData(
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
+  // One sentence says it: after a return of 0 the executive would add a page of its own.
+  const auto refuse = [&](const std::string& why)
+  {
+    output->Initialize();
+    vtkErrorMacro(<< why);
+    return 1;
+  };
   if (!this->ResultArrayName || !*this->ResultArrayName)
   {
-    vtkErrorMacro("ResultArrayName is empty. Give the noise array a name.");
-    return 0;
+    return refuse("ResultArrayName is empty. Give the noise array a name.");
   }
   // Everything else is clamped when it is set, but NaN passes a clamp.
   if (std::isnan(this->Wavelength) || std::isnan(this->Anisotropy) ||
     std::isnan(this->Persistence))
   {
-    vtkErrorMacro("Wavelength is " << this->Wavelength << ", Anisotropy " << this->Anisotropy
-                                   << ", Persistence " << this->Persistence
-                                   << "; give each a number.");
-    return 0;
+    std::ostringstream why;
+    why << "Wavelength is " << this->Wavelength << ", Anisotropy " << this->Anisotropy << ", Persistence "
+        << this->Persistence << "; give each a number.";
+    return refuse(why.str());
   }
 
   // The output: shallow copies of the input's datasets, so that arrays can be added.
@@ -819,8 +825,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   }
   if (!failure.empty())
   {
-    vtkErrorMacro(<< failure);
-    return 0;
+    return refuse(failure);
   }
 
   const double anisotropy = finder.IsSteered() ? this->Anisotropy : 1.0;
@@ -947,8 +952,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
-    return 0;
+    return refuse(error.what());
   }
 
   // One warning that says everything.

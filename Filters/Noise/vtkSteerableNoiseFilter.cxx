@@ -524,7 +524,8 @@ struct vtkSteerableNoiseFilter::Internals
       message << "\nThe samples are " << extremes.GetSampleSpacing()
               << " apart, too far for noise of FeatureSize " << finest
               << ". Set FeatureSize to at least " << smallest
-              << ", or refine the data (Magnification on images, Resample to Image, Subdivide).";
+              << ", refine the data (Magnification on images, Resample to Image, Subdivide), or show them as "
+                 "Steerable Noise (the representation or vtkSteerableNoiseMapper), as fine as the picture.";
     }
     // Scripts from before StreakLength set these.
     const steerable::NoiseParameters defaults;
@@ -607,9 +608,18 @@ int vtkSteerableNoiseFilter::RequestInformation(
   {
     outInfo->Remove(SDDP::TIME_RANGE());
   }
-  if (this->Magnification > 1 && vtkImageData::GetData(inInfo))
+  this->ResolvedMagnification = std::max(this->Magnification, 1);
+  if (vtkImageData::GetData(inInfo))
   {
-    noise::MagnifyInformation(inInfo, outInfo, this->Magnification);
+    if (this->Magnification == 0)
+    {
+      this->ResolvedMagnification = noise::GetAutomaticMagnification(
+        inInfo, this->FeatureSize, std::pow(this->Lacunarity, this->Octaves - 1));
+    }
+    if (this->ResolvedMagnification > 1)
+    {
+      noise::MagnifyInformation(inInfo, outInfo, this->ResolvedMagnification);
+    }
   }
   return 1;
 }
@@ -626,7 +636,7 @@ int vtkSteerableNoiseFilter::RequestUpdateExtent(
   {
     inInfo->Set(SDDP::UPDATE_TIME_STEP(), only); // there is no other: nothing is read again
   }
-  const bool magnify = this->Magnification > 1 && vtkImageData::GetData(inInfo);
+  const bool magnify = this->ResolvedMagnification > 1 && vtkImageData::GetData(inInfo);
   // Curvature looks at the next samples, and so does interpolation.
   const int border = (this->FollowCurvature ? 1 : 0) + (magnify ? 1 : 0);
   inInfo->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(),
@@ -637,7 +647,7 @@ int vtkSteerableNoiseFilter::RequestUpdateExtent(
     int extent[6];
     inInfo->Get(SDDP::WHOLE_EXTENT(), whole);
     outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
-    const int fine = magnify ? this->Magnification : 1;
+    const int fine = magnify ? this->ResolvedMagnification : 1;
     for (int axis = 0; axis < 3; ++axis)
     {
       const int low = static_cast<int>(std::floor(double(extent[2 * axis]) / fine)) - border;
@@ -665,16 +675,21 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     time = outInfo->Get(SDDP::UPDATE_TIME_STEP());
   }
+  // One sentence says it: after a return of 0 the executive would add a page of its own.
+  const auto refuse = [&](const std::string& why)
+  {
+    output->Initialize();
+    vtkErrorMacro(<< why);
+    return 1;
+  };
   if (!this->ResultArrayName || !*this->ResultArrayName)
   {
-    vtkErrorMacro("ResultArrayName is empty. Give the noise array a name.");
-    return 0;
+    return refuse("ResultArrayName is empty. Give the noise array a name.");
   }
 
   if (input->IsA("vtkHyperTreeGrid"))
   {
-    vtkErrorMacro(<< HyperTreeGridMessage);
-    return 0;
+    return refuse(HyperTreeGridMessage);
   }
 
   Internals internals;
@@ -718,7 +733,7 @@ int vtkSteerableNoiseFilter::RequestData(
     auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(inputs->NewIterator());
     // The levels of an AMR say how fine its images are.
     const bool isAMR = composite->IsA("vtkUniformGridAMR");
-    const bool magnify = this->Magnification > 1 && !isAMR;
+    const bool magnify = this->ResolvedMagnification > 1 && !isAMR;
     try
     {
       std::vector<vtkImageData*> images;
@@ -730,7 +745,7 @@ int vtkSteerableNoiseFilter::RequestData(
           images.push_back(image);
         }
       }
-      noise::CheckMemory(images, this->Magnification);
+      noise::CheckMemory(images, this->ResolvedMagnification);
     }
     catch (const std::exception& error)
     {
@@ -746,13 +761,13 @@ int vtkSteerableNoiseFilter::RequestData(
       const bool finer = image && magnify && !failed;
       if (finer)
       {
-        noise::Magnify(image, vtkImageData::SafeDownCast(copy), nullptr, this->Magnification);
+        noise::Magnify(image, vtkImageData::SafeDownCast(copy), nullptr, this->ResolvedMagnification);
       }
       else
       {
         copy->ShallowCopy(leaf);
       }
-      internals.ImagesAsTheyAre += image && isAMR && this->Magnification > 1;
+      internals.ImagesAsTheyAre += image && isAMR && this->ResolvedMagnification > 1;
       composite->SetDataSet(iterator, copy);
       if (auto* dataset = vtkDataSet::SafeDownCast(copy))
       {
@@ -770,21 +785,19 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     auto* dataset = vtkDataSet::SafeDownCast(output);
     auto* image = vtkImageData::SafeDownCast(input);
-    const bool magnify = image && this->Magnification > 1;
+    const bool magnify = image && this->ResolvedMagnification > 1;
     if (magnify)
     {
       try
       {
         int extent[6];
         outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
-        noise::CheckMemory({ image }, this->Magnification);
-        noise::Magnify(image, vtkImageData::SafeDownCast(output), extent, this->Magnification);
+        noise::CheckMemory({ image }, this->ResolvedMagnification);
+        noise::Magnify(image, vtkImageData::SafeDownCast(output), extent, this->ResolvedMagnification);
       }
       catch (const std::exception& error)
       {
-        output->Initialize();
-        vtkErrorMacro(<< error.what());
-        return 0;
+        return refuse(error.what());
       }
     }
     else
@@ -821,8 +834,7 @@ int vtkSteerableNoiseFilter::RequestData(
   const Lengths lengths(blocks, needsMagnitude, this->MaskUpperThreshold, this->Controller);
   if (failed)
   {
-    vtkErrorMacro(<< internals.Why);
-    return 0;
+    return refuse(internals.Why);
   }
   if (blocks.empty())
   {
@@ -844,14 +856,13 @@ int vtkSteerableNoiseFilter::RequestData(
     for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
     {
       internals.Process(blocks[i], parameters, extremes.Bounds.GetPlane(), lengths.Limit,
-        blocks[i].Original ? this->Magnification : 1, static_cast<double>(i) / blocks.size(),
+        blocks[i].Original ? this->ResolvedMagnification : 1, static_cast<double>(i) / blocks.size(),
         1.0 / blocks.size());
     }
   }
   catch (const std::exception& error)
   {
-    vtkErrorMacro(<< error.what());
-    return 0;
+    return refuse(error.what());
   }
   if (!composite)
   {
@@ -902,6 +913,7 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Period: " << this->Period[0] << " " << this->Period[1] << " " << this->Period[2]
      << "\n";
   os << indent << "Magnification: " << this->Magnification << "\n";
+  os << indent << "ResolvedMagnification: " << this->ResolvedMagnification << "\n";
   os << indent << "MaskThreshold: " << this->MaskThreshold << "\n";
   os << indent << "MaskUpperThreshold: " << this->MaskUpperThreshold << "\n";
   os << indent << "BlankValue: " << this->BlankValue << "\n";

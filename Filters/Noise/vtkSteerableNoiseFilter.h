@@ -304,10 +304,14 @@ public:
   /**
    * Images only, also in composites but those of an AMR, whose levels say how fine they are: samples per sample of
    * the input along each axis, 1 to 16, default 1. Point arrays are interpolated linearly, cell arrays are
-   * repeated, vectors on cells interpolated for the noise.
+   * repeated, vectors on cells interpolated for the noise. 0 is automatic: as many as give a streak (of the finest
+   * octave) 6 samples, but no more than 2^22 in all; the images of composites stay as they are. ParaView's panel
+   * begins with 0.
    */
-  vtkSetClampMacro(Magnification, int, 1, 16);
+  vtkSetClampMacro(Magnification, int, 0, 16);
   vtkGetMacro(Magnification, int);
+  /// The one in use since the last RequestInformation.
+  vtkGetMacro(ResolvedMagnification, int);
   ///@}
 
   ///@{
@@ -408,6 +412,7 @@ protected:
   int GradientSet = UNIFORM;
   int Period[3] = { 0, 0, 0 };
   int Magnification = 1;
+  int ResolvedMagnification = 1;
   double MaskThreshold = 0.0;
   double MaskUpperThreshold = 0.0;
   int BlankValue = BLANK_ZERO;

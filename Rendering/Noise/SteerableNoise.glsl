@@ -80,7 +80,8 @@ float FadeOf(float t)
   return 1.0 - t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
 
-vec3 UniformGradient(uint hash)
+/// dot(v, the gradient of a hash), which is even on the sphere.
+float GradientDot(uint hash, vec3 v)
 {
   float height = (float(int((hash << 1) & 0xFFFE0000u)) + 65536.0) * (1.0 / 2147483648.0);
   float angle = (float(int(hash << 16)) + 32768.0) * (3.14159265 / 4294967296.0);
@@ -89,8 +90,8 @@ vec3 UniformGradient(uint hash)
   float a = angle * angle;
   float sine = angle * (0.999997176 + a * (-0.166649797 + a * (0.00830743921 + a * -0.000183879492)));
   float cosine = 0.99999675 + a * (-0.49992689 + a * (0.04150074 + a * -0.0012744));
-  vec3 gradient = vec3(radius * cosine, radius * sine, height);
-  return (hash >> 31) != 0u ? -gradient : gradient;
+  float value = radius * (cosine * v.x + sine * v.y) + height * v.z;
+  return (hash >> 31) != 0u ? -value : value;
 }
 
 float StreakProfile(float sigma)
@@ -261,15 +262,18 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
   reachAcross *= 0.5;
   jitter = 0.5;
 #endif
+  // Squares of its half-axes: divisions are few and early, they cost the most here.
+  float along2 = 1.0 / (k * reachAlong);
+  float across2 = 1.0 / (b * reachAcross);
+  float second2 = 1.0 / (e * reachAcross);
   float kr = k * reachAlong;
-  float br = b * reachAcross;
-  float er = e * reachAcross;
 
   // From here on x is the axis that the flow follows most, and y of the others the one in which its section
   // is narrower, so that there are few rows. Gradients stay in the axes of the lattice.
   vec3 size = abs(metric.Direction);
   int cycle = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
-  vec3 width = Reorder(thirdAxis * thirdAxis / br + metric.SecondAxis * metric.SecondAxis / er, cycle, false);
+  vec3 width = Reorder(thirdAxis * thirdAxis * across2 + metric.SecondAxis * metric.SecondAxis * second2,
+    cycle, false);
   bool swapped = width.z < width.y;
   vec3 u = Reorder(metric.Direction, cycle, swapped);
   vec3 m = Reorder(metric.SecondAxis, cycle, swapped);
@@ -279,24 +283,26 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
   corner = Reorder(corner, cycle, swapped);
   uvec3 first = Reorder(HASH_AXIS, cycle, swapped);
   uvec3 last = Reorder(HASH_AXIS_FINAL, cycle, swapped);
-  float halfBendC = 0.5 * dot(d, c);
-  float halfBendM = 0.5 * dot(d, m);
-  mat3 axes = transpose(mat3(u, c, m)); // times v: its components along u, c and m
+  // Times v: its components along u, c and m, in half-axes of the ellipsoid q < 1.
+  vec3 roots = sqrt(vec3(k, b, e));
+  mat3 axes = transpose(mat3(roots.x * u, roots.y * c, roots.z * m));
+  mat3 metricAxes = mat3(roots.x * metric.Direction, roots.y * thirdAxis, roots.z * metric.SecondAxis);
+  vec2 halfBend = vec2(dot(d, c) * roots.y, dot(d, m) * roots.z) * (0.5 / k);
 
   // With C and M the ellipsoid is kr s^2 + t^2 + h^2 < 1 at s u + t C + h M + s^2 d / 2. It is the same for -s
   // and -u: here streamlines go up in x.
-  vec3 C = c * inversesqrt(br);
-  vec3 M = m * inversesqrt(er);
+  vec3 C = c * sqrt(across2);
+  vec3 M = m * sqrt(second2);
   vec3 up = u.x < 0.0 ? -u : u;
   float thickness = C.x * C.x + M.x * M.x;
   // All of it lies in this box.
-  vec3 extent = sqrt(up * up / kr + C * C + M * M) + jitter;
-  vec3 sag = d * (0.5 / kr);
+  vec3 extent = sqrt(up * up * along2 + C * C + M * M) + jitter;
+  vec3 sag = d * (0.5 * along2);
   ivec3 begin = ivec3(ceil(f - extent + min(sag, 0.0)));
   ivec3 end = ivec3(floor(f + extent + max(sag, 0.0)));
   // Where a streak turns within a few cells, the box is small and all of it is visited.
   float strong = dot(d, d) > 0.3 ? 100.0 : 0.0;
-  float farthest = inversesqrt(kr);
+  float farthest = sqrt(along2);
   float perTurn = 0.5 * inversesqrt(max(thickness * d.x * d.x, 1e-12));
 
   float noise = 0.0;
@@ -307,8 +313,9 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
     // Where the streamline's parabola has this x, and its direction (1, turn) there. `turns` is 0 where it
     // turns back; beyond, only its thickness reaches x.
     float turns = up.x * up.x + 2.0 * x * d.x;
-    float inverse = inversesqrt(max(turns, 0.06));
-    float s0 = 2.0 * x / (up.x + max(turns, 0.06) * inverse);
+    float root = sqrt(max(turns, 0.06));
+    float inverse = 1.0 / root;
+    float s0 = 2.0 * x / (up.x + root);
     s0 = turns < 0.06 ? clamp(s0, -farthest, farthest) : s0;
     vec2 turn = (up.yz + s0 * d.yz) * inverse;
     // To first order the section is the ellipse t^2 + h^2 < left with the sides A and B.
@@ -318,9 +325,9 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
     float yy = A.x * A.x + B.x * B.x;
     float inverseY = 1.0 / yy;
     float skew = (A.x * A.y + B.x * B.y) * inverseY;
-    float zz = inverse * inverse * inverseY / (br * er); // of z where y is given
+    float zz = inverse * inverse * inverseY * (across2 * second2); // of z where y is given
     // To second order it moves on by up to twice this; jitter moves it anywhere.
-    vec2 onward = 0.25 * min(flat2, 4.0 / kr) * (d.yz - turn * d.x);
+    vec2 onward = 0.25 * min(flat2, 4.0 * along2) * (d.yz - turn * d.x);
     vec2 slack = abs(vec2(onward.x, onward.y - skew * onward.x)) + strong +
       jitter * vec2(1.0 + abs(turn.x), 1.0 + abs(skew) + abs(turn.y - skew * turn.x));
     float ks0 = kr * s0;
@@ -354,38 +361,35 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
                        HashToUnit(HashStream(hash, 5u))) - 0.5;
         sth += axes * Reorder(shift, cycle, swapped);
 #endif
-        float s = sth.x;
-        float bend = s * s;
-        float t = sth.y - bend * halfBendC;
-        float h = sth.z - bend * halfBendM;
+        sth.yz -= sth.x * sth.x * halfBend;
         float amplitude = 1.0;
 #ifdef NOISE_MOTION
         float clock = fract(noisePhase + HashToUnit(HashStream(hash, 1u)));
-        s += (clock - 0.5) * noiseSpeed * inversesqrt(k);
+        sth.x += (clock - 0.5) * noiseSpeed;
         amplitude = sin(3.14159265 * clock);
         amplitude *= amplitude * 1.63299316;
 #endif
-        float across = b * t * t + e * h * h;
-        float q = k * s * s + across;
+        float across = dot(sth.yz, sth.yz);
 #ifdef NOISE_STREAKS
         if (across < 1.0)
         {
-          float profile = StreakProfile(-s * sqrt(k)) * FadeOf(sqrt(across));
+          float profile = StreakProfile(-sth.x) * FadeOf(sqrt(across));
           bool on = HashToUnit(HashStream(hash, 2u)) < noiseDensity;
           noise += on ? amplitude * profile : 0.0;
           variance += noiseDensity * profile * profile;
         }
 #else
         // 0 where q is 1 and beyond: a branch costs more than it saves.
-        float weight = FadeOf(min(q, 1.0));
-        vec3 Gv =
-          k * s * metric.Direction + b * t * thirdAxis + e * h * metric.SecondAxis;
-        noise += amplitude * weight * dot(UniformGradient(hash), Gv);
-        variance += weight * weight * dot(Gv, Gv) * (1.0 / 3.0);
+        vec3 Gv = FadeOf(min(sth.x * sth.x + across, 1.0)) * (metricAxes * sth);
+        noise += amplitude * GradientDot(hash, Gv);
+        variance += dot(Gv, Gv);
 #endif
       }
     }
   }
+#ifndef NOISE_STREAKS
+  variance *= 1.0 / 3.0; // of a gradient along one axis
+#endif
   return noise * inversesqrt(variance + VARIANCE_FLOOR);
 }
 

@@ -805,6 +805,81 @@ TEST(SteerableNoiseFilter, MagnificationSamplesTheFieldFiner)
   }
 }
 
+TEST(SteerableNoiseFilter, AutomaticMagnificationGivesAStreakSixSamples)
+{
+  struct Case
+  {
+    int Points[3];
+    double Spacing, FeatureSize;
+    int Octaves, Expected;
+  };
+  const Case cases[] = {
+    { { 41, 31, 1 }, 1.0, 2.0, 1, 3 },    // 6 / 2
+    { { 41, 31, 1 }, 1.0, 2.5, 1, 3 },    // the next whole one above 2.4
+    { { 41, 31, 1 }, 0.5, 2.0, 1, 2 },    // finer data need less
+    { { 41, 31, 1 }, 1.0, 6.0, 1, 1 },    // fine enough
+    { { 41, 31, 1 }, 1.0, 6.0, 2, 2 },    // the second octave is half as wide
+    { { 41, 31, 1 }, 1.0, 0.1, 1, 16 },   // the most there is
+    { { 41, 31, 1 }, 1.0, 0.0, 1, 12 },   // automatic: a hundredth of the diagonal, 50, is 0.5
+    { { 401, 301, 1 }, 1.0, 0.0, 1, 2 },  // and here 5
+    { { 801, 601, 1 }, 1.0, 0.6, 1, 2 },  // 10, but 3 are above 2^22 samples
+    { { 101, 101, 101 }, 1.0, 2.0, 1, 1 } // 2 are 8 million
+  };
+  for (const Case& c : cases)
+  {
+    auto image = MakeImage(c.Points[0], c.Points[1], c.Points[2], c.Spacing, false);
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    filter->SetInputData(image);
+    filter->SetFeatureSize(c.FeatureSize);
+    filter->SetOctaves(c.Octaves);
+    filter->SetMagnification(0);
+    filter->UpdateInformation();
+    EXPECT_EQ(filter->GetResolvedMagnification(), c.Expected) << c.Points[0] << " " << c.FeatureSize;
+  }
+  // The same as by hand, in pieces too: it comes from the whole extent.
+  auto image = MakeImage(41, 31, 1, 1.0, false);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(image);
+  filter->SetFeatureSize(2.0);
+  filter->SetMagnification(3);
+  filter->Update();
+  const std::vector<float> byHand = Values(filter->GetOutputDataObject(0));
+  filter->SetMagnification(0);
+  filter->Update();
+  EXPECT_EQ(Values(filter->GetOutputDataObject(0)), byHand);
+  vtkNew<vtkSteerableNoiseFilter> ofPart;
+  ofPart->SetInputData(image);
+  ofPart->SetFeatureSize(2.0);
+  ofPart->SetMagnification(0);
+  const int part[6] = { 30, 60, 0, 90, 0, 0 };
+  ofPart->UpdateExtent(part);
+  auto* output = vtkImageData::SafeDownCast(ofPart->GetOutputDataObject(0));
+  EXPECT_EQ(output->GetExtent()[0], 30);
+  EXPECT_EQ(Values(output).front(), byHand[30]);
+  // Composites stay as they are, and so does what is no image.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, image);
+  filter->SetInputData(blocks);
+  filter->Update();
+  EXPECT_EQ(filter->GetResolvedMagnification(), 1);
+  EXPECT_EQ(vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPoints(),
+    image->GetNumberOfPoints());
+}
+
+TEST(SteerableNoiseFilter, AnErrorIsOneSentence)
+{
+  auto image = MakeImage(5, 5, 1, 1.0, false);
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  auto executive = Listen(filter->GetExecutive());
+  filter->SetInputData(image);
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "speed");
+  filter->Update();
+  EXPECT_NE(messages->Text.find("There is no array 'speed'"), std::string::npos) << messages->Text;
+  EXPECT_EQ(executive->Text, "");
+  EXPECT_EQ(vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPoints(), 0);
+}
+
 TEST(SteerableNoiseFilter, MagnificationKeepsWhatTheInputHolds)
 {
   auto image = MakeImage(9, 9, 1);

@@ -8,20 +8,12 @@ import numpy
 import plugintest as pt
 import steerablenoise  # so that the filter's own object has its methods
 from paraview import simple
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
-from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 from vtkmodules.vtkImagingCore import vtkRTAnalyticSource
 
 FRAMES = 4
-
-
-def pixels(path):
-    reader = vtkPNGReader()
-    reader.SetFileName(path)
-    reader.Update()
-    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(int)
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -30,7 +22,7 @@ with tempfile.TemporaryDirectory() as folder:
     noise, view = made["noise"], made["view"]
     paths = [os.path.join(folder, "frame.%04d.png" % i) for i in range(FRAMES)]
     pt.check(sorted(os.listdir(folder)) == [os.path.basename(p) for p in paths], "the frames that were asked for: %s" % sorted(os.listdir(folder)))
-    frames = [pixels(path) for path in paths]
+    frames = [pt.pixels(path) for path in paths]
     pt.check(min(frame.std() for frame in frames) > 20, "noise in every frame")
     for i in range(FRAMES):
         difference = abs(frames[i] - frames[(i + 1) % FRAMES]).mean()
@@ -40,7 +32,7 @@ with tempfile.TemporaryDirectory() as folder:
     view.ViewTime = FRAMES
     later = os.path.join(folder, "later.png")
     simple.SaveScreenshot(later, view)
-    pt.check(abs(pixels(later) - frames[0]).max() <= 1, "after one period comes the first frame")
+    pt.check(abs(pt.pixels(later) - frames[0]).max() <= 1, "after one period comes the first frame")
 
 filter_object = noise.GetClientSideObject()
 offered = filter_object.GetOutputInformation(0).Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
@@ -99,7 +91,7 @@ with tempfile.TemporaryDirectory() as folder:
     sys.argv = ["animate.py", writer.GetFileName(), os.path.join(folder, "frames"), str(FRAMES)]
     made = runpy.run_path(os.path.join(pt.SOURCE, "Utilities", "animate.py"))
     simple.Delete(made["view"])
-    frames = [pixels(os.path.join(folder, "frames", "frame.%04d.png" % i)) for i in range(FRAMES)]
+    frames = [pt.pixels(os.path.join(folder, "frames", "frame.%04d.png" % i)) for i in range(FRAMES)]
     for i in range(FRAMES):
         difference = abs(frames[i] - frames[(i + 1) % FRAMES]).mean()
         pt.check(difference > 3, "one time in the file: frame %d differs from the next one, mean %g" % (i, difference))

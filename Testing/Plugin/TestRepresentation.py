@@ -25,12 +25,7 @@ def picture(view, name):
     """Grey values of a screenshot."""
     path = os.path.join(folder, name + ".png")
     SaveScreenshot(path, view, ImageResolution=[400, 300])
-    reader = vtkPNGReader()
-    reader.SetFileName(path)
-    reader.Update()
-    image = reader.GetOutput()
-    values = vtk_to_numpy(image.GetPointData().GetScalars())[:, :3].astype(float)
-    return values.mean(axis=1).reshape(300, 400)
+    return plugintest.pixels(path).mean(axis=1).reshape(300, 400)
 
 
 def show(source, view):

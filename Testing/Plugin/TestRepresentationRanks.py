@@ -7,8 +7,6 @@ import sys
 
 import numpy
 import plugintest as pt
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
 
 folder = os.environ["STEERABLENOISE_OUTPUT"]
 script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "representationranks.py")
@@ -16,10 +14,7 @@ pvbatch, mpi = sys.argv[1], sys.argv[2:]
 
 
 def read(name):
-    reader = vtkPNGReader()
-    reader.SetFileName(os.path.join(folder, name))
-    reader.Update()
-    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())[:, :3].astype(float)
+    return pt.pixels(os.path.join(folder, name))
 
 
 environment = pt.environment_for_mpi()

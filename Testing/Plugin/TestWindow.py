@@ -1,8 +1,13 @@
-"""ParaView's window: loads the plugin, applies the filter, saves what it shows, and quits."""
+"""ParaView's window: runs a script; then is used with keys only, as by who looks for LIC, and seen in numbers."""
 import os
+import shutil
+import struct
 import subprocess
 import sys
 import tempfile
+import time
+
+import numpy
 
 import plugintest as pt
 
@@ -21,6 +26,91 @@ with open({done!r}, "w") as file:
     file.write("%g %g" % noise.CellData["SteerableNoise"].GetRange())
 os._exit(0)
 """
+
+
+def screen():
+    """Grey values of the display, rows from above."""
+    dump = subprocess.run(["xwd", "-root", "-silent"], stdout=subprocess.PIPE, check=True).stdout
+    head = struct.unpack(">25I", dump[:100])
+    size, width, height, line, colors = head[0], head[4], head[5], head[12], head[19]
+    rows = numpy.frombuffer(dump, dtype=numpy.uint8, offset=size + 12 * colors)[: height * line]
+    return rows.reshape(height, line)[:, : 4 * width].reshape(height, width, 4)[..., :3].mean(axis=2)
+
+
+def middle():
+    """The middle of the view, which the data cover."""
+    rows = screen()
+    height, width = rows.shape
+    return rows[int(0.46 * height) : int(0.6 * height), int(0.5 * width) : int(0.8 * width)]
+
+
+def wait_for(what, condition, seconds=60):
+    end = time.time() + seconds
+    while time.time() < end:
+        if condition():
+            return True
+        time.sleep(1)
+    pt.check(False, "in the window: " + what)
+    return False
+
+
+def keys(window, *words):
+    """Keys, or with "type" a text, for the window that has the focus; window: give it to this one first."""
+    if window:
+        subprocess.run(["xdotool", "windowfocus", "--sync", window], check=False)
+    subprocess.run(["xdotool"] + list(words), check=True)
+    time.sleep(1)
+
+
+def use_by_keys(environment, folder):
+    """Ctrl+Space, "lic", Enter, Apply; undo and redo."""
+    if not shutil.which("xdotool") or not shutil.which("xwd"):
+        print("skipped: xdotool and xwd are absent")
+        return
+    environment = dict(environment, PV_PLUGIN_PATH=os.path.dirname(os.path.dirname(pt.PLUGIN)))
+    paraview = subprocess.Popen([sys.argv[1], "--data=" + pt.WAKE], env=environment)
+
+    def windows(by, pattern):
+        search = ["xdotool", "search", "--onlyvisible", by, pattern]
+        return subprocess.run(search, stdout=subprocess.PIPE, text=True).stdout.split()
+
+    try:
+        if not wait_for("it opens", lambda: windows("--name", "^ParaView")):
+            return
+        window = windows("--name", "^ParaView")[-1]
+        time.sleep(5)
+        subprocess.run(["xdotool", "windowmove", window, "0", "0", "windowsize", window, "1280", "1024"], check=True)
+        time.sleep(2)
+        empty = middle()
+        keys(window, "key", "alt+a")
+        wait_for("the wake is shown", lambda: abs(middle() - empty).mean() > 5)
+        time.sleep(2)
+        plain = middle()
+        pt.check(plain.std() < 3, "nothing but the colour of the wake: %g" % plain.std())
+        alone = len(windows("--class", "paraview"))
+        keys(None, "key", "ctrl+space")
+        wait_for("quick launch opens", lambda: len(windows("--class", "paraview")) > alone)
+        keys(None, "type", "lic")
+        keys(None, "key", "Return")
+        wait_for("quick launch closes", lambda: len(windows("--class", "paraview")) == alone)
+        keys(window, "key", "alt+a")
+        wait_for("noise after Ctrl+Space, lic, Enter, Apply", lambda: middle().std() > 8)
+        time.sleep(2)
+        noise = middle()
+        across, along = (abs(numpy.diff(noise, axis=axis)).mean() for axis in (0, 1))
+        pt.check(across > 1.5 * along, "streaks lie along the flow: %g across, %g along" % (across, along))
+        keys(window, "key", "ctrl+z")
+        wait_for("undo takes the noise away", lambda: abs(middle() - plain).max() < 3)
+        keys(window, "key", "ctrl+z")
+        keys(window, "key", "ctrl+y")
+        keys(window, "key", "alt+a")
+        wait_for("redo and Apply bring it back", lambda: abs(middle() - noise).mean() < 3)
+        pt.check(paraview.poll() is None, "the window is still open")
+    finally:
+        paraview.kill()
+        paraview.wait()
+
+
 with tempfile.TemporaryDirectory() as folder:
     picture = os.path.join(pt.OUTPUT, "window.png")
     done = os.path.join(folder, "done")
@@ -44,4 +134,5 @@ with tempfile.TemporaryDirectory() as folder:
         low, high = (float(x) for x in open(done).read().split())
         pt.check(low < -1.5 and high > 1.5, "noise in the window")
         pt.check(os.path.getsize(picture) > 5000, "a picture of the window")
+    use_by_keys(environment, folder)
 pt.finish()

@@ -10,6 +10,8 @@ from paraview import servermanager, simple
 from paraview.vtk.numpy_interface import dataset_adapter
 from vtkmodules.vtkCommonCore import vtkIdList, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkFiltersCore import vtkExtractCells
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 SOURCE = os.environ["STEERABLENOISE_SOURCE"]
@@ -37,6 +39,9 @@ def check(condition, what):
 
 def finish():
     print("%d passed, %d failed" % (_checks - _failures, _failures))
+    # ParaView 5.11 makes an X error of an exit with an open view.
+    for view in simple.GetRenderViews():
+        simple.Delete(view)
     sys.exit(1 if _failures else 0)
 
 
@@ -60,6 +65,14 @@ def array(dataset, name="SteerableNoise"):
         if found:
             return numpy.array(dataset_adapter.vtkDataArrayToVTKArray(found))
     return None
+
+
+def pixels(path):
+    """The colours of a picture, 0 to 255, one row of three for each pixel, from below."""
+    reader = vtkPNGReader()
+    reader.SetFileName(path)
+    reader.Update()
+    return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())[:, :3].astype(float)
 
 
 def slabs(places):

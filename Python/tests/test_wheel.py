@@ -26,7 +26,8 @@ def test_one_wheel_for_python_3_12_and_newer(wheel):
         assert tags.startswith("cp312-abi3-")
         assert "steerablenoise/_kernel.abi3.so" in wheel.namelist() or sys.platform != "linux"
     else:
-        assert tags.startswith("cp3%d-cp3%d-" % (sys.version_info[1],) * 2)
+        own = f"cp3{sys.version_info[1]}"
+        assert tags.startswith(f"{own}-{own}-")
 
 
 def test_the_version_is_that_of_the_project(wheel):

@@ -12,7 +12,7 @@ install_packages() {
   local version packages missing=()
   version=$(. /etc/os-release && echo "${VERSION_ID:-sid}")
   packages=(g++ cmake ninja-build paraview-dev python3-paraview libeigen3-dev libhwy-dev libgtest-dev
-    libbenchmark-dev xvfb xauth libgl1-mesa-dri openmpi-bin)
+    libbenchmark-dev python3-dev python3-venv xvfb xauth libgl1-mesa-dri openmpi-bin)
   case $version in
     12 | 13)
       packages+=(libopenmpi-dev libdouble-conversion-dev libpython3-dev

@@ -40,6 +40,14 @@ inline void ToFloats(const double* values, int count, float* out)
       std::isfinite(value) ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
   }
 }
+
+/// √sum, `sum` being made of the squares of these values: finite, if they are too large to be squared.
+inline double LengthFromSquares(double sum, const double* values, int count)
+{
+  const bool tooLarge = std::isinf(sum) &&
+    std::none_of(values, values + count, [](double value) { return std::isinf(value); });
+  return tooLarge ? std::numeric_limits<double>::max() : std::sqrt(sum);
+}
 } // namespace steerable
 
 #endif

@@ -331,9 +331,7 @@ void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, doub
       {
         sum = components > 2 ? t[0] * t[0] + t[1] * t[1] + t[2] * t[2] : t[0] * t[0] + t[1] * t[1];
       }
-      const bool tooLarge = std::isinf(sum) &&
-        std::none_of(t, t + components, [](double value) { return std::isinf(value); });
-      lengths[i] = tooLarge ? std::numeric_limits<double>::max() : std::sqrt(sum);
+      lengths[i] = steerable::LengthFromSquares(sum, t, components);
     });
 }
 

@@ -140,16 +140,17 @@ LengthRange FindLengths(const std::vector<vtkDataArray*>& arrays, double upperTh
 {
   LengthRange range;
   range.Limit = upperThreshold > 0.0 ? upperThreshold : range.Limit;
-  LengthOctaves lengths;
+  steerable::LengthOctaves lengths;
   for (vtkDataArray* array : arrays)
   {
-    lengths.Add(array, {}, range.Limit);
+    AddLengths(lengths, array, {}, range.Limit);
   }
   if (controller && controller->GetNumberOfProcesses() > 1)
   {
-    lengths.Reduce(controller);
+    Reduce(lengths, controller);
   }
-  const FarAbove farAbove = upperThreshold > 0.0 ? FarAbove() : lengths.FindFarAbove();
+  const steerable::FarAbove farAbove =
+    upperThreshold > 0.0 ? steerable::FarAbove() : lengths.FindFarAbove();
   if (farAbove.Fill)
   {
     range.Limit = farAbove.Rest;

@@ -232,7 +232,7 @@ struct Lengths
   double Limit;
   /// The longest of the others, where it was asked for.
   double Longest = 0.0;
-  noise::FarAbove FarAbove;
+  steerable::FarAbove FarAbove;
   /// Their component of the largest amount.
   double FarValue = 0.0;
 
@@ -246,15 +246,15 @@ struct Lengths
     {
       return; // nobody asks
     }
-    noise::LengthOctaves octaves;
+    steerable::LengthOctaves octaves;
     for (const Block& block : blocks)
     {
       const noise::HiddenSamples hidden(block.GetOriginal());
-      octaves.Add(block.GetOriginalArray(), hidden.Get(block.Cells), this->Limit);
+      noise::AddLengths(octaves, block.GetOriginalArray(), hidden.Get(block.Cells), this->Limit);
     }
     if (this->Controller)
     {
-      octaves.Reduce(this->Controller);
+      noise::Reduce(octaves, this->Controller);
     }
     if (limit <= 0.0)
     {
@@ -472,7 +472,7 @@ struct vtkSteerableNoiseFilter::Internals
   void Report(const Extremes& extremes, const Lengths& lengths, const steerable::NoiseParameters& parameters, bool composite)
   {
     std::ostringstream message;
-    const noise::FarAbove& farAbove = lengths.FarAbove;
+    const steerable::FarAbove& farAbove = lengths.FarAbove;
     if (farAbove.Fill && this->TooLong > 0)
     {
       message << "\n"

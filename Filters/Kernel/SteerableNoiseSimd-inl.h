@@ -328,7 +328,7 @@ void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t at, std::si
     directed += there[i];
     noise[i] = from[i];
   }
-  counts.Degenerate += count - static_cast<std::size_t>(directed);
+  counts.Degenerate += setup.Isotropic ? 0 : count - static_cast<std::size_t>(directed);
 }
 
 /// Cells and fractions of samples from `at` on: floor and difference in double, the rest in float. `Plain`: on
@@ -730,7 +730,8 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
       for (std::size_t r = 0; r < patch.Rows; ++r)
       {
         const std::size_t at = Patch::At(r);
-        uniform = Metrics<N>(setup, field, firstOf(r), at, patch.Columns, *block) && uniform;
+        uniform =
+          Metrics<N>(setup, field, firstOf(r), at, patch.Columns, *block, counts.Bounded) && uniform;
         if (setup.Octaves.size() > 1)
         {
           std::fill_n(block->Noise + at, patch.Columns + Lanes, 0.0f);
@@ -779,7 +780,7 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     {
       CopyCurvature<N>(setup, field.Curvature->Read(first, count, block->Tuples), count, *block);
     }
-    const bool uniform = Metrics<N>(setup, field, first, 0, count, *block);
+    const bool uniform = Metrics<N>(setup, field, first, 0, count, *block, counts.Bounded);
     if (setup.Octaves.size() > 1)
     {
       std::fill(block->Noise, block->Noise + count + Lanes, 0.0f);

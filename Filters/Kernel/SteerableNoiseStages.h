@@ -69,6 +69,8 @@ struct NoiseSetup
   /// 0: a sample belongs to the corner below it. 1/2: to the nearest one, from which its distance has a
   /// float's full relative precision; normalisation would show less.
   double CellRounding;
+  /// Nothing steers: every metric is I.
+  bool Isotropic;
   /// Second axis in use (tensors and surfaces in 3D).
   bool Biaxial;
   bool Curved;
@@ -111,6 +113,7 @@ struct MetricBlock
   /// Room for tuples that the host converts, and for the directions of a patch and of two more rows: unit
   /// vectors, in 2D vectors and 1/length.
   alignas(64) float Tuples[6 * BlockRoom];
+  alignas(64) double MetricTuples[6 * BlockRoom];
   alignas(64) double Positions[3 * BlockRoom];
   alignas(64) float DirectionRows[TileRegisters + 2][3][RowRoom];
 };

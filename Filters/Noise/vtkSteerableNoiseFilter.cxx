@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSteerableNoiseFilter.h"
 
+#include "MetricTensor.h"
 #include "NoiseArrays.h"
 #include "NoiseBounds.h"
 #include "NoiseGhosts.h"
@@ -17,11 +18,13 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -334,7 +337,8 @@ struct vtkSteerableNoiseFilter::Internals
     p.EigenvalueSum = f.EigenvalueSum;
     p.LatticeWindow = f.LatticeWindow;
     p.Strength = f.Strength;
-    p.StrengthBy = static_cast<steerable::StrengthMode>(f.StrengthMode);
+    p.StrengthBy = f.IsSteered() ? static_cast<steerable::StrengthMode>(f.StrengthMode)
+                                 : steerable::StrengthMode::Constant;
     p.ReferenceMagnitude = f.ReferenceMagnitude;
     p.MaskThreshold = f.MaskThreshold;
     p.FollowCurvature = f.FollowCurvature;
@@ -357,20 +361,41 @@ struct vtkSteerableNoiseFilter::Internals
     return p;
   }
 
-  /// Finds the array of a block; false with `why` where there is none that can be used.
+  /// Finds the array of a block, if anything steers; false with `why` where there is none that can be used.
   bool FindArray(Block& block, std::string& why) const
   {
-    block.Array = noise::FindSteeringArray(
-      block.DataSet, this->Self->GetInputArrayInformation(0), block.Cells, why);
+    vtkInformation* choice = this->Self->GetInputArrayInformation(0);
+    if (!this->Self->IsSteered())
+    {
+      block.Cells = choice->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::CELL &&
+        block.DataSet->GetNumberOfCells() > 0;
+      return true;
+    }
+    block.Array = noise::FindSteeringArray(block.DataSet, choice, block.Cells, why);
+    if (!block.Array)
+    {
+      why += " Noise without a direction needs none: set Direction to None.";
+    }
     return block.Array != nullptr;
   }
 
-  void Process(const Block& block, const steerable::NoiseParameters& parameters,
+  void Process(const Block& block, steerable::NoiseParameters parameters,
     const noise::Plane& plane, double limit, int magnification,
     double progressStart, double progressShare)
   {
     noise::Samples samples(
       block.DataSet, block.Array, block.Cells, block.Shape, magnification, plane, limit);
+    const double threshold = parameters.MaskThreshold;
+    if (this->Self->TensorUse != TENSOR_DIRECTION && block.Array &&
+      noise::IsTensor(block.Array->GetNumberOfComponents()))
+    {
+      const double factor = this->Self->TensorUse == TENSOR_WORLD_METRIC
+        ? parameters.FeatureSize * parameters.FeatureSize
+        : 1.0;
+      samples.TakeTensorsAsMetrics(factor);
+      parameters.MaskThreshold *= factor;
+      parameters.ReferenceMagnitude *= factor;
+    }
     const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
     if (parameters.FollowCurvature)
     {
@@ -409,14 +434,17 @@ struct vtkSteerableNoiseFilter::Internals
     }
     if (anyDegenerate || counts.Stagnant > 0 || tooLong > 0)
     {
-      this->Blank(block, leftOut, parameters.MaskThreshold, values);
+      this->Blank(block, leftOut, threshold, values);
     }
 
     vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
     if (this->Self->OutputMetric)
     {
-      auto metrics = noise::NewOutputArray("Metric", 6, samples.GetNumberOfSamples());
-      float* tuples = metrics->GetPointer(0);
+      vtkNew<vtkDoubleArray> metrics;
+      metrics->SetName("Metric");
+      metrics->SetNumberOfComponents(6);
+      metrics->SetNumberOfTuples(samples.GetNumberOfSamples());
+      double* tuples = metrics->GetPointer(0);
       const vtkIdType count = samples.GetNumberOfSamples();
       vtkSMPTools::For(0, count, 1024,
         [&](vtkIdType begin, vtkIdType end)
@@ -489,6 +517,15 @@ struct vtkSteerableNoiseFilter::Internals
               << lengths.FarValue << ", " << farAbove.Longest << " long, the next " << farAbove.Rest
               << ". If they stand for missing values, set MaskUpperThreshold "
               << 2.0 * farAbove.Rest << ".";
+    }
+    if (this->Counts.Bounded > 0)
+    {
+      const steerable::EigenvalueRange bounds = steerable::MetricBounds(parameters);
+      message << "\n"
+              << this->Counts.Bounded << " metrics had eigenvalues that are not from " << bounds.Along << " to "
+              << bounds.Across
+              << " in 1 / FeatureSize^2 and were bounded. Check TensorUse and FeatureSize: a streak reaches "
+                 "1 / sqrt(eigenvalue) cells.";
     }
     // Every wall and body has a few; most of the data are a mistake.
     if (2 * this->Counts.Degenerate > static_cast<std::uint64_t>(this->Samples))
@@ -628,7 +665,7 @@ int vtkSteerableNoiseFilter::RequestUpdateExtent(
   }
   const bool magnify = this->Magnification > 1 && vtkImageData::GetData(inInfo);
   // Curvature looks at the next samples, and so does interpolation.
-  const int border = (this->FollowCurvature ? 1 : 0) + (magnify ? 1 : 0);
+  const int border = (this->FollowCurvature && this->IsSteered() ? 1 : 0) + (magnify ? 1 : 0);
   inInfo->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(),
     outInfo->Get(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS()) + border);
   if (inInfo->Has(SDDP::WHOLE_EXTENT()) && outInfo->Has(SDDP::UPDATE_EXTENT()))
@@ -817,8 +854,9 @@ int vtkSteerableNoiseFilter::RequestData(
     extremes.Add(block, this->FeatureSize <= 0.0);
   }
   extremes.Reduce(this->Controller);
-  const bool needsMagnitude = this->StrengthMode == MAGNITUDE && this->ReferenceMagnitude <= 0.0;
-  const Lengths lengths(blocks, needsMagnitude, this->MaskUpperThreshold, this->Controller);
+  const bool needsMagnitude = this->IsSteered() && this->StrengthMode == MAGNITUDE &&
+    this->ReferenceMagnitude <= 0.0;
+  const Lengths lengths(this->IsSteered() ? blocks : std::vector<Block>(), needsMagnitude, this->MaskUpperThreshold, this->Controller);
   if (failed)
   {
     vtkErrorMacro(<< internals.Why);
@@ -872,6 +910,8 @@ int vtkSteerableNoiseFilter::RequestData(
 void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Direction: " << this->Direction << "\n";
+  os << indent << "TensorUse: " << this->TensorUse << "\n";
   os << indent << "FeatureSize: " << this->FeatureSize << "\n";
   os << indent << "ResolvedFeatureSize: " << this->ResolvedFeatureSize << "\n";
   os << indent << "StreakLength: " << this->StreakLength << "\n";

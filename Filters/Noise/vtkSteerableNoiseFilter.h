@@ -42,6 +42,17 @@ public:
   vtkTypeMacro(vtkSteerableNoiseFilter, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  enum DirectionType
+  {
+    DIRECTION_FIELD = 0,
+    DIRECTION_NONE = 1
+  };
+  enum TensorUseType
+  {
+    TENSOR_DIRECTION = 0,
+    TENSOR_METRIC = 1,
+    TENSOR_WORLD_METRIC = 2
+  };
   enum StrengthModeType
   {
     CONSTANT = 0,
@@ -87,6 +98,30 @@ public:
     BLANK_NAN = 1,
     BLANK_HIDDEN = 2
   };
+
+  ///@{
+  /**
+   * DIRECTION_FIELD, the default: vectors or tensors steer the noise, and data without them are an error.
+   * DIRECTION_NONE: nothing does, no array is needed, and noise is isotropic on any dataset: at its points, or
+   * at its cells if SetInputArrayToProcess asks for them. What goes by vectors (Strength, the masks,
+   * FollowCurvature, Speed) does not count then, and Basis STREAKS is an error.
+   */
+  vtkSetClampMacro(Direction, int, DIRECTION_FIELD, DIRECTION_NONE);
+  vtkGetMacro(Direction, int);
+  ///@}
+
+  ///@{
+  /**
+   * What tensors are. TENSOR_DIRECTION, the default: the eigenvector of their largest eigenvalue is the direction of
+   * streaks, whose shape the properties below give. TENSOR_METRIC: the metric itself, which measures distances, in
+   * 1 / FeatureSize² as OutputMetric has it: a streak reaches 1 / √eigenvalue cells along each eigenvector.
+   * TENSOR_WORLD_METRIC: the same in 1 / world units². StreakLength, EigenvalueSum, Quality and MinimumEigenvalue do
+   * not count then; eigenvalues are bounded to 1/400 (with LatticeWindow 1/1000) and 16 / FeatureSize², with a
+   * warning that counts them. A metric has no sense: streaks' heads and motion may point to either side.
+   */
+  vtkSetClampMacro(TensorUse, int, TENSOR_DIRECTION, TENSOR_WORLD_METRIC);
+  vtkGetMacro(TensorUse, int);
+  ///@}
 
   ///@{
   /**
@@ -350,8 +385,9 @@ public:
 
   ///@{
   /**
-   * Adds the metric of every sample, before curvature, as the 6-component float array "Metric": XX YY
-   * ZZ XY YZ XZ in units of 1 / FeatureSize². Flat images have 0 across their plane. Default off.
+   * Adds the metric of every sample, before curvature, as the 6-component double array "Metric": XX YY
+   * ZZ XY YZ XZ in units of 1 / FeatureSize². Flat images have 0 across their plane. With TensorUse TENSOR_METRIC
+   * it gives the same noise again, where there is a direction. Default off.
    */
   vtkSetMacro(OutputMetric, bool);
   vtkGetMacro(OutputMetric, bool);
@@ -376,6 +412,8 @@ protected:
   int RequestData(
     vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*) override;
 
+  int Direction = DIRECTION_FIELD;
+  int TensorUse = TENSOR_DIRECTION;
   double FeatureSize = 0.0;
   double ResolvedFeatureSize = 0.0;
   vtkIdType NumberOfDegenerateSamples = 0;
@@ -419,6 +457,9 @@ protected:
 private:
   vtkSteerableNoiseFilter(const vtkSteerableNoiseFilter&) = delete;
   void operator=(const vtkSteerableNoiseFilter&) = delete;
+
+  /// Whether vectors or tensors are looked for.
+  bool IsSteered() const { return this->Direction == DIRECTION_FIELD; }
 
   struct Internals;
 };

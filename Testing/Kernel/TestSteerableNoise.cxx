@@ -3,6 +3,8 @@
 /// The fast path: equal to the reference at every SIMD level, to the bit however it is split.
 #include "KernelTestHelpers.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -1199,6 +1201,186 @@ TEST(SteerableNoise, GivesFiniteNoiseWithoutADirection)
   }
 }
 
+namespace
+{
+/// Noise of metrics of 6 components at the places of the samples.
+template <int N>
+std::vector<float> NoiseOfMetrics(const NoiseParameters& parameters, const RandomSamples& samples,
+  const std::vector<double>& metrics, EvaluationCounts& counts)
+{
+  const ContiguousReader<double, 3> positions(samples.Positions.data());
+  const ContiguousReader<double, 6> reader(metrics.data());
+  Field field;
+  field.Metrics = &reader;
+  std::vector<float> noise(samples.Count);
+  counts =
+    SteerableNoise(parameters, N).EvaluatePoints(positions, field, 0, samples.Count, noise.data());
+  return noise;
+}
+
+template <int N>
+void ExpectNoiseOfMetrics(NoiseParameters parameters, double least, double most)
+{
+  parameters.FollowCurvature = false;
+  const RandomSamples samples(N == 2 ? 300 : 60, 30.0, 0.0, 17);
+  std::vector<double> metrics;
+  std::vector<double> slow;
+  for (std::size_t i = 0; i < samples.Count; ++i)
+  {
+    // Eigenvalues anywhere between the bounds on the axes of a random tensor.
+    const Matrix<N> random = TensorOf<N>(samples.Tensors.data() + 6 * i);
+    Eigen::SelfAdjointEigenSolver<Matrix<N>> solver(random);
+    Vector<N> lambda;
+    for (int axis = 0; axis < N; ++axis)
+    {
+      const double share = 0.5 + 0.5 * std::sin(7.0 * i + 2.0 * axis);
+      lambda[axis] = std::exp(std::log(least) + share * std::log(most / least));
+    }
+    const Matrix<N> G =
+      solver.eigenvectors() * lambda.asDiagonal() * solver.eigenvectors().transpose();
+    Matrix<3> full = Matrix<3>::Zero();
+    full.topLeftCorner<N, N>() = G;
+    metrics.insert(
+      metrics.end(), { full(0, 0), full(1, 1), full(2, 2), full(0, 1), full(1, 2), full(0, 2) });
+    slow.push_back(SteerableNoiseReference<N>(
+      parameters, samples.GetPosition<N>(i), MetricFromMetric<N>(parameters, G, G.norm())));
+  }
+  EvaluationCounts counts;
+  const std::vector<float> noise = NoiseOfMetrics<N>(parameters, samples, metrics, counts);
+  EXPECT_LE(LargestDifference(noise, slow), 5e-6) << N << "D, from " << least << " to " << most;
+  EXPECT_EQ(counts.Degenerate + counts.Bounded, 0u);
+  EXPECT_GT(*std::max_element(slow.begin(), slow.end()), 0.5) << "something to compare";
+}
+
+template <int N>
+void ExpectTheSameNoiseOfTheirMetrics(Steering steering)
+{
+  for (NoiseParameters parameters : { NoiseParameters(), PaperModel(0), PaperModel(4) })
+  {
+    parameters.FollowCurvature = false;
+    parameters.Strength = 0.9;
+    const RandomSamples samples(N == 2 ? 2000 : 500, 30.0, 0.0, 19);
+    std::vector<double> metrics;
+    for (std::size_t i = 0; i < samples.Count; ++i)
+    {
+      Matrix<3> G = Matrix<3>::Zero();
+      G.topLeftCorner<N, N>() =
+        ReferenceMetric<N>(parameters, samples, i, steering).ToMatrix();
+      metrics.insert(metrics.end(), { G(0, 0), G(1, 1), G(2, 2), G(0, 1), G(1, 2), G(0, 2) });
+    }
+    const std::vector<float> expected = FastNoise<N>(parameters, samples, steering);
+    parameters.Strength = 1.0;
+    EvaluationCounts counts;
+    const std::vector<float> again = NoiseOfMetrics<N>(parameters, samples, metrics, counts);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < samples.Count; ++i)
+    {
+      squares += std::pow(double(again[i]) - expected[i], 2) / samples.Count;
+    }
+    const std::string what =
+      std::to_string(N) + "D" + (parameters.LatticeWindow ? ", window" : "");
+    EXPECT_LE(std::sqrt(squares), 4e-7) << what;
+    EXPECT_LE(LargestDifference(again, expected), Bound) << what; // floats on both ways
+    EXPECT_EQ(counts.Bounded, 0u);
+  }
+}
+} // namespace
+
+TEST(SteerableNoise, TakesAMetricOfTheUsersOwn)
+{
+  const NoiseParameters free;
+  ExpectNoiseOfMetrics<2>(free, 1.0 / 400.0, 16.0);
+  ExpectNoiseOfMetrics<2>(free, 0.3, 3.0);
+  ExpectNoiseOfMetrics<3>(free, 0.1, 16.0);
+  ExpectNoiseOfMetrics<3>(free, 0.3, 3.0);
+  ExpectNoiseOfMetrics<2>(PaperModel(4), 1e-3, 16.0);
+  ExpectNoiseOfMetrics<3>(PaperModel(1), 1e-3, 16.0);
+  NoiseParameters variant;
+  variant.Interpolant = Fade::Cubic;
+  variant.Grid = Lattice::Jittered;
+  variant.Octaves = 2;
+  ExpectNoiseOfMetrics<2>(variant, 0.1, 4.0);
+
+  // All in one row with others and alone, what is no metric and what is bounded is counted.
+  const RandomSamples samples(5, 30.0, 0.0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> metrics = { 0.8, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, nan, 1, 1, 0, 0, 0, //
+    1e-9, 1, 1, 0, 0, 0, 1, 1e9, 1, 0, 0, 0 };
+  EvaluationCounts counts;
+  const std::vector<float> noise = NoiseOfMetrics<3>(free, samples, metrics, counts);
+  EXPECT_EQ(counts.Degenerate, 2u);
+  EXPECT_EQ(counts.Bounded, 2u);
+  EXPECT_TRUE(std::all_of(noise.begin(), noise.end(), [](float x) { return std::isfinite(x); }));
+}
+
+TEST(SteerableNoise, ItsMetricGivesTheSameNoiseAgain)
+{
+  ExpectTheSameNoiseOfTheirMetrics<2>(Steering::Vectors);
+  ExpectTheSameNoiseOfTheirMetrics<2>(Steering::Tensors);
+  ExpectTheSameNoiseOfTheirMetrics<3>(Steering::Vectors);
+  ExpectTheSameNoiseOfTheirMetrics<3>(Steering::Normals);
+  ExpectTheSameNoiseOfTheirMetrics<3>(Steering::Tensors);
+}
+
+TEST(SteerableNoise, IsIsotropicWhereNothingSteers)
+{
+  // Zero vectors are isotropic as well, but count as a lack.
+  const auto expect = [](const Variant& variant, NoiseParameters parameters)
+  {
+    variant.Change(parameters);
+    if (parameters.Surflet == Basis::Streaks)
+    {
+      return;
+    }
+    RandomSamples samples(200, 20.0, 0.2, 13);
+    std::fill(samples.Vectors.begin(), samples.Vectors.end(), 0.0f);
+    const ContiguousReader<double, 3> positions(samples.Positions.data());
+    Field field;
+    field.Isotropic = true;
+    const SteerableNoise kernel(parameters, 3);
+    std::vector<float> noise(samples.Count);
+    const EvaluationCounts counts =
+      kernel.EvaluatePoints(positions, field, 0, samples.Count, noise.data());
+    EXPECT_EQ(counts.Degenerate + counts.Stagnant, 0u) << variant.Name;
+    parameters.FollowCurvature = false; // which the vectors would have otherwise
+    EXPECT_EQ(noise, FastNoise<3>(parameters, samples, Steering::Vectors)) << variant.Name;
+    std::vector<double> slow;
+    for (std::size_t i = 0; i < 20; ++i)
+    {
+      slow.push_back(SteerableNoiseReference<3>(
+        parameters, samples.GetPosition<3>(i), AxialMetric<3>()));
+    }
+    noise.resize(20);
+    EXPECT_LE(LargestDifference(noise, slow), variant.Bound) << variant.Name;
+
+    // Images: the same rows from zero vectors.
+    const ImageGrid grid = SmallGrid(2);
+    const std::vector<float> zero(3 * grid.GetNumberOfRows() * grid.Dimensions[0], 0.0f);
+    std::vector<float> image(zero.size() / 3);
+    SteerableNoise(parameters, 2)
+      .EvaluateImage(grid, field, 0, grid.GetNumberOfRows(), image.data());
+    EXPECT_EQ(image, ImageNoise(parameters, 2, grid, zero)) << variant.Name;
+  };
+  for (const Variant& variant : Variants())
+  {
+    expect(variant, NoiseParameters());
+    expect(variant, PaperModel(0));
+  }
+  // What goes by the vectors does not count.
+  const Variant mask = { "MaskThreshold", [](NoiseParameters& p) { p.MaskThreshold = 1.0; } };
+  const RandomSamples samples(50, 20.0, 0.0);
+  const ContiguousReader<double, 3> positions(samples.Positions.data());
+  Field field;
+  field.Isotropic = true;
+  std::vector<float> plain(50);
+  std::vector<float> masked(50);
+  NoiseParameters parameters;
+  SteerableNoise(parameters, 3).EvaluatePoints(positions, field, 0, 50, plain.data());
+  mask.Change(parameters);
+  SteerableNoise(parameters, 3).EvaluatePoints(positions, field, 0, 50, masked.data());
+  EXPECT_EQ(masked, plain);
+}
+
 TEST(SteerableNoise, GivesFiniteNoiseForTensorsWithoutADirection)
 {
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -1467,7 +1649,19 @@ TEST(SteerableNoise, RefusesWhatItCannotDo)
   const SteerableNoise space(NoiseParameters(), 3);
   Field field;
   EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
+  NoiseParameters streaks;
+  streaks.Surflet = Basis::Streaks;
+  field.Isotropic = true;
+  EXPECT_THROW(SteerableNoise(streaks, 2).EvaluatePoints(positions, field, 0, 1, &noise),
+    std::invalid_argument);
   field.Vectors = &vectors;
+  EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
+  field.Isotropic = false;
+  const double metric[6] = { 1, 1, 1, 0, 0, 0 };
+  const ContiguousReader<double, 6> metrics(metric);
+  field.Metrics = &metrics;
+  EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
+  field.Metrics = nullptr;
   field.Tensors = &tensors;
   EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
   field.Tensors = nullptr;

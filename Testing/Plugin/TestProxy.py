@@ -140,6 +140,29 @@ for name, value in dict(Quality=0, MinimumEigenvalue=0.2, Falloff="Radial").item
     other = pt.array(changed.GetClientSideObject().GetOutput())
     pt.check(abs(other - values).max() > 1e-3, name + " matters with LatticeWindow")
     simple.Delete(changed)
+# A tensor as the metric itself: (0.8, 2.0) stays as it is.
+measured = simple.ProgrammableFilter(Input=simple.Wavelet(), Script="""
+import numpy
+output.ShallowCopy(inputs[0].VTKObject)
+output.PointData.append(numpy.tile([0.8, 2.0, 1.0, 0.0, 0.0, 0.0], (output.GetNumberOfPoints(), 1)), "G6")
+""")
+simple.UpdatePipeline(proxy=measured)
+for use, expected in (("Metric", 2.0), ("World Metric", 8.0)):
+    spots = simple.SteerableNoise(Input=measured, SelectInputVectors=["POINTS", "G6"], TensorUse=use,
+                                  FeatureSize=2, OutputMetric=1)
+    simple.UpdatePipeline(proxy=spots)
+    metric = spots.GetClientSideObject().GetOutput().GetPointData().GetArray("Metric").GetTuple(100)
+    pt.check(abs(metric[1] - expected) < 1e-9, "%s keeps the metric: %s" % (use, metric))
+    simple.Delete(spots)
+# Without a direction any data will do.
+ball = simple.Sphere()
+clouds = simple.SteerableNoise(Input=ball, Direction="None", FeatureSize=0.2, Octaves=2)
+with pt.Messages() as messages:
+    simple.UpdatePipeline(proxy=clouds)
+pt.check(messages.errors == 0, "no vectors are needed: " + messages.text)
+pt.check(pt.array(clouds.GetClientSideObject().GetOutput()).std() > 0.5, "clouds on a ball")
+simple.Delete(clouds)
+simple.Delete(ball)
 fine = simple.SteerableNoise(Input=wake, Magnification=2, OutputMetric=1, ResultArrayName="n")
 simple.UpdatePipeline(proxy=fine)
 data = fine.GetClientSideObject().GetOutput()

@@ -93,12 +93,16 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
   setup.Support = static_cast<float>(FadeSupport(p.Interpolant));
   setup.WindowReach =
     p.LatticeWindow ? setup.Support * (p.Quality + 1) : std::numeric_limits<float>::infinity();
-  setup.Variant = p.Surflet != Basis::Gradient || p.Interpolant != Fade::Quintic ||
-    p.Window != Falloff::Separable || p.Grid != Lattice::Square ||
-    p.Gradients != GradientSet::Uniform || p.Motion || !p.AnisotropicWeight;
+  const bool gradients = p.Surflet == Basis::Gradient && p.Window == Falloff::Separable &&
+    p.Grid == Lattice::Square && !p.Motion;
+  const bool plain = gradients && p.Interpolant == Fade::Quintic &&
+    p.Gradients == GradientSet::Uniform && p.AnisotropicWeight && p.MetricInProjection;
+  setup.Variant = !plain;
+  // Perlin's own noise, also with a metric in the projection.
+  const bool unweighted = gradients && p.Interpolant != Fade::Wide && !p.AnisotropicWeight;
   setup.Biaxial = dimension == 3 && (field.Tensors || field.Metrics || field.Normals);
   setup.Curved = curved;
-  setup.SingleCell = p.Quality == 0 && !setup.Variant && p.LatticeWindow && !setup.Biaxial &&
+  setup.SingleCell = p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial &&
     !curved && p.Normalize == Normalization::None;
   setup.Uniform = setup.SingleCell && p.StrengthBy == StrengthMode::Constant &&
     !(p.MaskThreshold > 0.0) && p.Octaves == 1 && !p.Turbulence;

@@ -62,7 +62,7 @@ struct NoiseSetup
   float Support;
   /// Only what the fast loops know: gradients on the square lattice, still, quintic and separable.
   bool Variant;
-  /// Nothing but the 2^N corners of the cell and no sums: Rice's Quality 0.
+  /// Nothing but the 2^N corners of the cell and no sums: Rice's Quality 0, and Perlin's noise.
   bool SingleCell;
   /// The same with one strength for all vectors, and nothing to do with the sum but to hand it out.
   bool Uniform;

@@ -336,6 +336,8 @@ struct vtkSteerableNoiseFilter::Internals
     p.MinimumEigenvalue = f.MinimumEigenvalue;
     p.EigenvalueSum = f.EigenvalueSum;
     p.LatticeWindow = f.LatticeWindow;
+    p.AnisotropicWeight = f.AnisotropicWeight;
+    p.MetricInProjection = f.MetricInProjection;
     p.Strength = f.Strength;
     p.StrengthBy = f.IsSteered() ? static_cast<steerable::StrengthMode>(f.StrengthMode)
                                  : steerable::StrengthMode::Constant;
@@ -358,6 +360,14 @@ struct vtkSteerableNoiseFilter::Internals
     p.Gradients = static_cast<steerable::GradientSet>(f.GradientSet);
     p.Period = { f.Period[0], f.Period[1], f.Period[2] };
     p.Seed = static_cast<std::uint32_t>(f.Seed);
+    if (f.Model == MODEL_PERLIN)
+    {
+      p.LatticeWindow = true;
+      p.Quality = 0;
+      p.AnisotropicWeight = false;
+      p.MetricInProjection = false;
+      p.Normalize = steerable::Normalization::None;
+    }
     return p;
   }
 
@@ -910,6 +920,7 @@ int vtkSteerableNoiseFilter::RequestData(
 void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Model: " << this->Model << "\n";
   os << indent << "Direction: " << this->Direction << "\n";
   os << indent << "TensorUse: " << this->TensorUse << "\n";
   os << indent << "FeatureSize: " << this->FeatureSize << "\n";
@@ -919,6 +930,8 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MinimumEigenvalue: " << this->MinimumEigenvalue << "\n";
   os << indent << "EigenvalueSum: " << this->EigenvalueSum << "\n";
   os << indent << "LatticeWindow: " << this->LatticeWindow << "\n";
+  os << indent << "AnisotropicWeight: " << this->AnisotropicWeight << "\n";
+  os << indent << "MetricInProjection: " << this->MetricInProjection << "\n";
   os << indent << "Strength: " << this->Strength << "\n";
   os << indent << "StrengthMode: " << this->StrengthMode << "\n";
   os << indent << "ReferenceMagnitude: " << this->ReferenceMagnitude << "\n";

@@ -42,6 +42,11 @@ public:
   vtkTypeMacro(vtkSteerableNoiseFilter, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  enum ModelType
+  {
+    MODEL_STEERABLE = 0,
+    MODEL_PERLIN = 1
+  };
   enum DirectionType
   {
     DIRECTION_FIELD = 0,
@@ -98,6 +103,16 @@ public:
     BLANK_NAN = 1,
     BLANK_HIDDEN = 2
   };
+
+  ///@{
+  /**
+   * MODEL_STEERABLE, the default, or MODEL_PERLIN: Perlin's own noise as Kensler writes it, with his variants by
+   * Fade, Falloff, Lattice, GradientSet, Basis and Period. It stands for Direction NONE, LatticeWindow on, Quality
+   * 0, AnisotropicWeight and MetricInProjection off and Normalization NONE, whatever these are set to.
+   */
+  vtkSetClampMacro(Model, int, MODEL_STEERABLE, MODEL_PERLIN);
+  vtkGetMacro(Model, int);
+  ///@}
 
   ///@{
   /**
@@ -182,6 +197,23 @@ public:
   vtkSetMacro(LatticeWindow, bool);
   vtkGetMacro(LatticeWindow, bool);
   vtkBooleanMacro(LatticeWindow, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Surflets fade with the distance that the metric measures, default on. Off needs LatticeWindow, which bounds them
+   * then: Fig. 2 b of the paper, and with MetricInProjection off too, Fig. 2 a.
+   */
+  vtkSetMacro(AnisotropicWeight, bool);
+  vtkGetMacro(AnisotropicWeight, bool);
+  vtkBooleanMacro(AnisotropicWeight, bool);
+  ///@}
+
+  ///@{
+  /// Gradients are projected with the metric, as in the paper, default on.
+  vtkSetMacro(MetricInProjection, bool);
+  vtkGetMacro(MetricInProjection, bool);
+  vtkBooleanMacro(MetricInProjection, bool);
   ///@}
 
   ///@{
@@ -412,6 +444,7 @@ protected:
   int RequestData(
     vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*) override;
 
+  int Model = MODEL_STEERABLE;
   int Direction = DIRECTION_FIELD;
   int TensorUse = TENSOR_DIRECTION;
   double FeatureSize = 0.0;
@@ -424,6 +457,8 @@ protected:
   double MinimumEigenvalue = 0.5;
   double EigenvalueSum = 3.2;
   bool LatticeWindow = false;
+  bool AnisotropicWeight = true;
+  bool MetricInProjection = true;
   double Strength = 1.0;
   int StrengthMode = CONSTANT;
   double ReferenceMagnitude = 0.0;
@@ -459,7 +494,10 @@ private:
   void operator=(const vtkSteerableNoiseFilter&) = delete;
 
   /// Whether vectors or tensors are looked for.
-  bool IsSteered() const { return this->Direction == DIRECTION_FIELD; }
+  bool IsSteered() const
+  {
+    return this->Direction == DIRECTION_FIELD && this->Model == MODEL_STEERABLE;
+  }
 
   struct Internals;
 };

@@ -3,6 +3,9 @@
 /// vtkSteerableNoiseFilter on images: arrays, planes, pieces, threads, time, options.
 #include "FilterTestHelpers.h"
 
+#include "LatticeHash.h"
+#include "Surflet.h"
+
 #include "vtkAlgorithmOutput.h"
 #include "vtkArrayCalculator.h"
 #include "vtkCallbackCommand.h"
@@ -1136,6 +1139,148 @@ TEST(SteerableNoiseFilter, AMetricOfTheUsersOwnIsTakenAsItIs)
   }
 }
 
+/// Perlin's noise in the plane as Kensler sums it, of a falloff that reaches `reach` cells.
+static double PlainPerlinNoise(double x, double y, const std::function<double(double)>& f,
+  int reach, bool radial, steerable::GradientSet set)
+{
+  double sum = 0.0;
+  const int cx = static_cast<int>(std::floor(x));
+  const int cy = static_cast<int>(std::floor(y));
+  for (int gy = cy - reach + 1; gy <= cy + reach; ++gy)
+  {
+    for (int gx = cx - reach + 1; gx <= cx + reach; ++gx)
+    {
+      const std::uint32_t hash = steerable::HashCorner(gx, gy, 0, 0);
+      const steerable::Vector<2> g = steerable::GradientOf<2>(set, hash);
+      const double falloff =
+        radial ? f(std::hypot(x - gx, y - gy)) : f(x - gx) * f(y - gy);
+      sum += falloff * (g[0] * (gx - x) + g[1] * (gy - y));
+    }
+  }
+  return sum;
+}
+
+TEST(SteerableNoiseFilter, GivesPerlinsNoiseAndItsVariants)
+{
+  const auto cubic = [](double t)
+  {
+    t = std::abs(t);
+    return t >= 1.0 ? 0.0 : 1.0 - (3.0 - 2.0 * t) * t * t;
+  };
+  const auto quintic = [](double t)
+  {
+    t = std::abs(t);
+    return t >= 1.0 ? 0.0 : 1.0 - ((6.0 * t - 15.0) * t + 10.0) * t * t * t;
+  };
+  const auto wide = [](double t)
+  {
+    t = 1.0 - 0.25 * t * t;
+    return t < 0.0 ? 0.0 : (4.0 * t - 3.0) * t * t * t * t;
+  };
+  vtkNew<vtkImageData> image; // without an array
+  image->SetDimensions(50, 40, 1);
+  image->SetOrigin(-7.3, 2.1, 0.0);
+  using Filter = vtkSteerableNoiseFilter;
+  struct Case
+  {
+    int Fade;
+    std::function<double(double)> F;
+    int Reach;
+    int Falloff;
+    int GradientSet;
+  };
+  for (const Case& test : { Case{ Filter::QUINTIC, quintic, 1, Filter::SEPARABLE, Filter::UNIFORM },
+         Case{ Filter::CUBIC, cubic, 1, Filter::SEPARABLE, Filter::PERLIN },
+         Case{ Filter::WIDE, wide, 2, Filter::SEPARABLE, Filter::UNIFORM },
+         Case{ Filter::WIDE, wide, 2, Filter::RADIAL, Filter::PERLIN },
+         Case{ Filter::CUBIC, cubic, 1, Filter::RADIAL, Filter::UNIFORM } })
+  {
+    const std::vector<float> noise = Noise(image, 4.0,
+      [&](Filter* filter)
+      {
+        filter->SetModel(Filter::MODEL_PERLIN);
+        filter->SetFade(test.Fade);
+        filter->SetFalloff(test.Falloff);
+        filter->SetGradientSet(test.GradientSet);
+        filter->SetQuality(3); // these do not count
+        filter->SetStrengthMode(Filter::MAGNITUDE);
+        filter->SetMaskThreshold(1.0);
+      });
+    ASSERT_EQ(noise.size(), 2000u);
+    EXPECT_GT(Deviation(noise), 0.1);
+    for (std::size_t i = 0; i < noise.size(); ++i)
+    {
+      const double expected = PlainPerlinNoise((-7.3 + i % 50) / 4.0, (2.1 + i / 50) / 4.0, test.F,
+        test.Reach, test.Falloff == Filter::RADIAL,
+        static_cast<steerable::GradientSet>(test.GradientSet));
+      ASSERT_NEAR(noise[i], expected, 1e-6) << test.Fade << " " << test.Falloff << ", " << i;
+    }
+  }
+}
+
+TEST(SteerableNoiseFilter, TakesThePaperApart)
+{
+  auto image = MakeImage(50, 40, 1);
+  const auto noise = [&](bool weight, bool projection)
+  {
+    return Noise(image, 5.0,
+      [&](vtkSteerableNoiseFilter* filter)
+      {
+        filter->LatticeWindowOn();
+        filter->SetEigenvalueSum(4.0);
+        filter->SetQuality(0);
+        filter->SetNormalization(vtkSteerableNoiseFilter::NONE);
+        filter->SetAnisotropicWeight(weight);
+        filter->SetMetricInProjection(projection);
+        filter->FollowCurvatureOff();
+      });
+  };
+  // Fig. 2 a, with the vectors there: Perlin's noise.
+  const std::vector<float> a = noise(false, false);
+  EXPECT_EQ(a, Noise(image, 5.0, [](vtkSteerableNoiseFilter* filter)
+    { filter->SetModel(vtkSteerableNoiseFilter::MODEL_PERLIN); }));
+  // b, c and what is neither, by Rice's own loop.
+  vtkDataArray* vectors = image->GetPointData()->GetVectors();
+  const auto fade = [](double t) { return steerable::FadeOf(steerable::Fade::Quintic, t); };
+  for (const bool weight : { false, true })
+  {
+    for (const bool projection : { false, true })
+    {
+      const std::vector<float> found = noise(weight, projection);
+      for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+      {
+        Eigen::Vector2d u(vectors->GetComponent(i, 0), vectors->GetComponent(i, 1));
+        u.normalize();
+        const double k = 0.5;
+        const double b = 4.0 - k - 1e-4;
+        const Eigen::Matrix2d G =
+          b * Eigen::Matrix2d::Identity() + (k - b) * u * u.transpose();
+        const Eigen::Vector2d p(i % 50 / 5.0, i / 50 / 5.0);
+        double sum = 0.0;
+        for (int corner = 0; corner < 4; ++corner)
+        {
+          const int x = static_cast<int>(std::floor(p[0])) + corner % 2;
+          const int y = static_cast<int>(std::floor(p[1])) + corner / 2;
+          const Eigen::Vector2d v(x - p[0], y - p[1]);
+          const Eigen::Vector2d r =
+            steerable::GradientOf<2>(steerable::GradientSet::Uniform, steerable::HashCorner(x, y, 0, 0));
+          const double d = r.dot(projection ? Eigen::Vector2d(G * v) : v);
+          sum += d * fade(v[0]) * fade(v[1]) * (weight ? fade(v.dot(G * v)) : 1.0);
+        }
+        ASSERT_NEAR(found[i], sum, 2e-6) << weight << projection << ", " << i;
+      }
+    }
+  }
+  // Without any bound of the surflets there is no noise, but a sentence.
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(image);
+  filter->AnisotropicWeightOff();
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("LatticeWindow"), std::string::npos) << messages->Text;
+}
+
 TEST(SteerableNoiseFilter, OutputMetricIsTheMetric)
 {
   auto image = MakeImage(8, 7, 6);
@@ -1225,7 +1370,7 @@ TEST(SteerableNoiseFilter, EveryPropertyIsPrinted)
   vtkNew<vtkSteerableNoiseFilter> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* name : { "Direction", "TensorUse", "FeatureSize", "StreakLength", "Quality", "MinimumEigenvalue", "EigenvalueSum",
+  for (const char* name : { "Model", "Direction", "TensorUse", "AnisotropicWeight", "MetricInProjection", "FeatureSize", "StreakLength", "Quality", "MinimumEigenvalue", "EigenvalueSum",
          "LatticeWindow", "Strength", "StrengthMode", "ReferenceMagnitude", "Normalization",
          "FollowCurvature", "Basis", "Density", "Phase", "Animate", "Speed", "TimePeriod", "TimeSteps",
          "Octaves", "Lacunarity", "Gain", "Turbulence", "Fade", "Falloff", "Lattice", "GradientSet",

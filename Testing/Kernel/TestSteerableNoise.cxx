@@ -281,6 +281,36 @@ const std::vector<Variant>& Variants()
         p.Normalize = Normalization::None;
         p.Quality = 0;
       } },
+    { "MetricInProjection off", [](P& p) { p.MetricInProjection = false; } },
+    { "MetricInProjection off, Motion, Jittered",
+      [](P& p)
+      {
+        p.MetricInProjection = false;
+        p.Motion = true;
+        p.Phase = 0.3;
+        p.Grid = Lattice::Jittered;
+      } },
+    { "AnisotropicWeight and MetricInProjection off, Perlin, None",
+      [](P& p)
+      {
+        p.LatticeWindow = true;
+        p.AnisotropicWeight = false;
+        p.MetricInProjection = false;
+        p.Normalize = Normalization::None;
+        p.Quality = 0;
+        p.Gradients = GradientSet::Perlin;
+      } },
+    { "AnisotropicWeight off, Cubic, Octaves 2, Period",
+      [](P& p)
+      {
+        p.LatticeWindow = true;
+        p.AnisotropicWeight = false;
+        p.Normalize = Normalization::None;
+        p.Quality = 0;
+        p.Interpolant = Fade::Cubic;
+        p.Octaves = 2;
+        p.Period = { 4, 5, 3 };
+      } },
     { "Seed 12345", [](P& p) { p.Seed = 12345; } },
     { "Seed 2^32 - 1, Octaves 3",
       [](P& p)
@@ -783,6 +813,37 @@ TEST(SteerableNoise, EqualsTheReferenceOnImages)
         const double bound = curved ? CurvedImageBound : Bound;
         ExpectReferenceOfImages<2>(parameters, SmallGrid(2), Swirl, "2D" + family, bound);
         ExpectReferenceOfImages<3>(parameters, SmallGrid(3), Swirl, "3D" + family, bound);
+      }
+    }
+  }
+}
+
+TEST(SteerableNoise, EqualsTheReferenceInTheCellsOfImages)
+{
+  // What needs the corners of the sample's own cell alone: Rice's Fig. 2 a and b, and Perlin's noise.
+  for (const bool metric : { false, true })
+  {
+    for (const Fade fade : { Fade::Cubic, Fade::Quintic })
+    {
+      for (const GradientSet gradients : { GradientSet::Uniform, GradientSet::Perlin })
+      {
+        NoiseParameters parameters = PaperModel(0);
+        parameters.FollowCurvature = false;
+        parameters.Normalize = Normalization::None;
+        parameters.FeatureSize = 1.5;
+        parameters.AnisotropicWeight = false;
+        parameters.MetricInProjection = metric;
+        parameters.Interpolant = fade;
+        parameters.Gradients = gradients;
+        ExpectReferenceOfImages<2>(parameters, SmallGrid(2), Swirl, "2D cells", Bound);
+        ExpectReferenceOfImages<3>(parameters, SmallGrid(3), Swirl, "3D cells", Bound);
+        // Steps of more than a cell have lanes hashed by themselves.
+        parameters.FeatureSize = 0.05;
+        ExpectReferenceOfImages<2>(parameters, SmallGrid(2), Swirl, "2D cells, far", Bound);
+        EvaluationCounts counts;
+        const ImageGrid grid = SmallGrid(3);
+        ImageNoise(parameters, 3, grid, SampleVectors(grid, Swirl), &counts);
+        EXPECT_EQ(counts.VisitedCorners, 8 * grid.GetNumberOfRows() * grid.Dimensions[0]);
       }
     }
   }

@@ -70,7 +70,8 @@ for name, prop in panel.items():
 CONDITIONS = {
     "Density": ("Basis", "2", None), "ReferenceMagnitude": ("StrengthMode", "1", None),
     "StreakLength": ("LatticeWindow", "0", None), "Quality": ("LatticeWindow", "1", None),
-    "MinimumEigenvalue": ("LatticeWindow", "1", None), "Falloff": ("LatticeWindow", "1", None),
+    "MinimumEigenvalue": ("LatticeWindow", "1", None), "AnisotropicWeight": ("LatticeWindow", "1", None),
+    "Falloff": ("LatticeWindow", "1", None),
     "Lacunarity": ("Octaves", "1", "1"), "Gain": ("Octaves", "1", "1"), "TimeSteps": ("TimePeriod", "0", "1"),
 }
 shown_if = {}
@@ -119,7 +120,7 @@ simple.Delete(by_name)
 
 # Each property through the proxy changes the noise.
 CHANGES = dict(
-    FeatureSize=0.5, StreakLength=3, EigenvalueSum=6.0, LatticeWindow=1,
+    FeatureSize=0.5, Model="Perlin Noise", MetricInProjection=0, StreakLength=3, EigenvalueSum=6.0, LatticeWindow=1,
     Strength=0.5, StrengthMode="Magnitude", Normalization="None", FollowCurvature=0, Basis="Value",
     Phase=0.3, Animate=1, Octaves=2, Turbulence=1, Fade="Cubic",
     Lattice="Jittered", GradientSet="Perlin", Period=[4, 4, 0], MaskThreshold=0.5, MaskUpperThreshold=1.0, Seed=7,
@@ -134,7 +135,7 @@ for name, value in CHANGES.items():
 paper = simple.SteerableNoise(Input=wake, LatticeWindow=1)
 simple.UpdatePipeline(proxy=paper)
 values = pt.array(paper.GetClientSideObject().GetOutput())
-for name, value in dict(Quality=0, MinimumEigenvalue=0.2, Falloff="Radial").items():
+for name, value in dict(Quality=0, MinimumEigenvalue=0.2, AnisotropicWeight=0, Falloff="Radial").items():
     changed = simple.SteerableNoise(Input=wake, LatticeWindow=1, **{name: value})
     simple.UpdatePipeline(proxy=changed)
     other = pt.array(changed.GetClientSideObject().GetOutput())

@@ -44,6 +44,18 @@ EigenvalueRange SurfaceEigenvalues(const NoiseParameters& parameters)
   return { along, std::max(along, across) };
 }
 
+NoiseParameters WithShape(const NoiseParameters& parameters, const float* shape)
+{
+  NoiseParameters own = parameters;
+  const auto take = [](double& value, double given, double least, double most)
+  { value = std::isfinite(given) ? std::min(std::max(given, least), most) : value; };
+  take(own.StreakLength, shape[0], 1.0, 20.0);
+  take(own.Strength, shape[1], 0.0, 1.0);
+  take(own.EigenvalueSum, shape[2], 2.0,
+    parameters.Normalize == Normalization::WeightSum ? 4.0 : 16.0);
+  return own;
+}
+
 double StrengthOf(const NoiseParameters& parameters, double magnitude)
 {
   if (parameters.StrengthBy == StrengthMode::Magnitude)

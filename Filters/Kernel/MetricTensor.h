@@ -65,6 +65,12 @@ struct AxialMetric
   }
 };
 
+/**
+ * Parameters with the StreakLength, Strength and EigenvalueSum of one sample, kept within their ranges; what is not
+ * finite is that of all samples. Along with them goes the sum's limit of 4 where weights divide.
+ */
+NoiseParameters WithShape(const NoiseParameters& parameters, const float* shape);
+
 /// Strength in [0, 1] of a vector or tensor of this magnitude.
 double StrengthOf(const NoiseParameters& parameters, double magnitude);
 

@@ -104,7 +104,7 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
   setup.Curved = curved;
   setup.SingleCell = p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial &&
     !curved && p.Normalize == Normalization::None;
-  setup.Uniform = setup.SingleCell && p.StrengthBy == StrengthMode::Constant &&
+  setup.Uniform = setup.SingleCell && (!field.Shapes || field.Isotropic) && p.StrengthBy == StrengthMode::Constant &&
     !(p.MaskThreshold > 0.0) && p.Octaves == 1 && !p.Turbulence;
   setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;
   const bool jittered = p.Grid == Lattice::Jittered;

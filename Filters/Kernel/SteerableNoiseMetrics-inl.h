@@ -279,6 +279,37 @@ HWY_NOINLINE void MetricsOfDirections(
   }
 }
 
+/// Eigenvalues of samples that have a shape of their own, in place of those that MetricsOfDirections gave them.
+template <int N>
+void ReshapeMetrics(const NoiseSetup& setup, const float* shapes, const float* normals,
+  std::size_t at, std::size_t count, MetricBlock& block)
+{
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const std::size_t to = at + i;
+    if (block.Sense[to] == 0.0f)
+    {
+      continue;
+    }
+    const NoiseParameters own = WithShape(setup.Parameters, shapes + 3 * i);
+    bool onSurface = false; // as ProjectOnSurface has it
+    if (normals)
+    {
+      const double length =
+        Eigen::Map<const Eigen::Vector3f>(normals + 3 * i).template cast<double>().norm();
+      onSurface = length > 0.0 && std::isfinite(length);
+    }
+    const EigenvalueRange range =
+      onSurface ? SurfaceEigenvalues(own) : VectorEigenvalues(own, N);
+    const double strength = StrengthOf(own, block.Length[to]);
+    const auto blend = [=](double eigenvalue)
+    { return static_cast<float>(1.0 + strength * (eigenvalue - 1.0)); };
+    block.Along[to] = blend(range.Along);
+    block.Across[to] = blend(range.Across);
+    block.Second[to] = blend(onSurface ? SurfaceNormalEigenvalue : range.Across);
+  }
+}
+
 /**
  * Adds u_axis ∂u/∂axis to the bend, the neighbours turned to the side of the middle one; a neighbour without a
  * direction stands for no change. Rows are unit vectors, in 2D vectors and 1/length.
@@ -466,6 +497,7 @@ bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
     MetricsOfNothing(at, count, block);
     return setup.Uniform;
   }
+  const float* shapes = field.Shapes ? field.Shapes->Read(first, count, block.Shapes) : nullptr;
   if (field.Tensors)
   {
     const float* tuples = field.Tensors->Read(first, count, block.Tuples);
@@ -475,7 +507,9 @@ bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
         const Matrix<N> tensor = TensorOf<N>(tuples + 6 * i);
         norm = tensor.norm();
         norm = N == 2 ? WholeLength(norm, AcrossPlane(tuples + 6 * i)) : norm;
-        return MetricFromTensor<N>(setup.Parameters, tensor, norm);
+        return shapes
+          ? MetricFromTensor<N>(WithShape(setup.Parameters, shapes + 3 * i), tensor, norm)
+          : MetricFromTensor<N>(setup.Parameters, tensor, norm);
       });
     PadTail(block, at + count);
     return false;
@@ -490,8 +524,10 @@ bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
         norm = metric.norm();
         norm = N == 2 ? WholeLength(norm, AcrossPlane(tuples + 6 * i)) : norm;
         bool isBounded = false;
-        const AxialMetric<N> result =
-          MetricFromMetric<N>(setup.Parameters, metric, norm, &isBounded);
+        const AxialMetric<N> result = shapes
+          ? MetricFromMetric<N>(
+              WithShape(setup.Parameters, shapes + 3 * i), metric, norm, &isBounded)
+          : MetricFromMetric<N>(setup.Parameters, metric, norm, &isBounded);
         bounded += isBounded;
         return result;
       });
@@ -507,12 +543,17 @@ bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
   float* const rest[2] = { block.URest[0] + at, block.URest[1] + at };
   UnitVectors<N, Wanted::Metrics>(
     vectors, count, unit, block.Length + at, setup.SingleCell ? nullptr : rest);
+  const float* normals = nullptr;
   if (field.Normals)
   {
-    const float* normals = field.Normals->Read(first, count, block.Tuples + 3 * BlockRoom);
+    normals = field.Normals->Read(first, count, block.Tuples + 3 * BlockRoom);
     ProjectOnSurface(vectors, normals, at, count, block);
   }
   MetricsOfDirections<N>(setup, block, at, count);
+  if (shapes)
+  {
+    ReshapeMetrics<N>(setup, shapes, normals, at, count, block);
+  }
   PadTail(block, at + count);
   return false;
 }

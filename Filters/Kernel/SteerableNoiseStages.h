@@ -113,6 +113,7 @@ struct MetricBlock
   /// Room for tuples that the host converts, and for the directions of a patch and of two more rows: unit
   /// vectors, in 2D vectors and 1/length.
   alignas(64) float Tuples[6 * BlockRoom];
+  alignas(64) float Shapes[3 * BlockRoom];
   alignas(64) double MetricTuples[6 * BlockRoom];
   alignas(64) double Positions[3 * BlockRoom];
   alignas(64) float DirectionRows[TileRegisters + 2][3][RowRoom];

@@ -245,6 +245,39 @@ private:
   const std::vector<unsigned char>& Left;
 };
 
+class ShapeReader : public steerable::TupleReader<float>
+{
+public:
+  explicit ShapeReader(const ShapeArrays& arrays)
+    : Arrays(arrays)
+  {
+  }
+  const float* Read(std::size_t first, std::size_t count, float* scratch) const override
+  {
+    std::fill_n(scratch, 3 * count, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t which = 0; which < this->Arrays.size(); ++which)
+    {
+      vtkDataArray* array = this->Arrays[which];
+      if (!array)
+      {
+        continue;
+      }
+      const bool scalar = array->GetNumberOfComponents() == 1;
+      ForEachTuple(array, first, count,
+        [&](std::size_t i, const double* t)
+        {
+          const double value =
+            scalar ? t[0] : std::sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+          scratch[3 * i + which] = static_cast<float>(value);
+        });
+    }
+    return scratch;
+  }
+
+private:
+  ShapeArrays Arrays;
+};
+
 class PositionReader : public steerable::TupleReader<double>
 {
 public:
@@ -305,6 +338,11 @@ std::unique_ptr<steerable::TupleReader<double>> MakeMetricReader(
   vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane, double factor)
 {
   return std::make_unique<TensorReader<double>>(array, axes, inPlane, plane, factor);
+}
+
+std::unique_ptr<steerable::TupleReader<float>> MakeShapeReader(const ShapeArrays& arrays)
+{
+  return std::make_unique<ShapeReader>(arrays);
 }
 
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray* array)

@@ -57,6 +57,12 @@ std::unique_ptr<steerable::TupleReader<float>> MakeTensorReader(
 std::unique_ptr<steerable::TupleReader<double>> MakeMetricReader(
   vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane, double factor);
 
+/// Arrays that StreakLength, Strength and EigenvalueSum come from, null where they are the same for all samples.
+using ShapeArrays = std::array<vtkDataArray*, 3>;
+
+/// The three of each sample: values of one component, lengths of vectors, and NaN where there is no array.
+std::unique_ptr<steerable::TupleReader<float>> MakeShapeReader(const ShapeArrays& arrays);
+
 /// Coordinates of 3-component arrays.
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray* array);
 

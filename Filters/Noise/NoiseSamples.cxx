@@ -476,6 +476,12 @@ void Samples::TakeTensorsAsMetrics(double factor)
   }
 }
 
+void Samples::SetShapes(const ShapeArrays& arrays)
+{
+  this->Shapes = MakeShapeReader(arrays);
+  this->Field.Shapes = this->Shapes.get();
+}
+
 void Samples::ComputeCurvature(double featureSize)
 {
   const vtkIdType count = this->GetNumberOfSamples();
@@ -515,7 +521,7 @@ steerable::EvaluationCounts Samples::Evaluate(
                       : kernel.EvaluatePoints(*this->Positions, this->Field, begin, end, noise);
 }
 
-void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkIdType begin,
+void Samples::EvaluateMetrics(const steerable::NoiseParameters& common, vtkIdType begin,
   vtkIdType end, double* metrics) const
 {
   using namespace steerable;
@@ -529,8 +535,12 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkI
     this->Steering ? this->Steering->Read(begin, count, scratch.data()) : nullptr;
   const float* normals =
     this->NormalReader ? this->NormalReader->Read(begin, count, normalScratch.data()) : nullptr;
+  std::vector<float> shapeScratch(this->Shapes ? 3 * count : 0);
+  const float* shapes =
+    this->Shapes ? this->Shapes->Read(begin, count, shapeScratch.data()) : nullptr;
   for (std::size_t i = 0; i < count; ++i)
   {
+    const NoiseParameters parameters = shapes ? WithShape(common, shapes + 3 * i) : common;
     Matrix<3> metric = Matrix<3>::Zero();
     if (this->Field.Isotropic)
     {

@@ -51,6 +51,9 @@ public:
   /// Tensors times `factor` are the metric itself; without effect on vectors.
   void TakeTensorsAsMetrics(double factor);
 
+  /// StreakLength, Strength and EigenvalueSum of each sample from arrays, of which one at least is there.
+  void SetShapes(const ShapeArrays& arrays);
+
   /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.
   void ComputeCurvature(double featureSize);
 
@@ -94,6 +97,7 @@ private:
   steerable::Field Field;
   std::unique_ptr<steerable::TupleReader<float>> Steering;
   std::unique_ptr<steerable::TupleReader<double>> Metrics;
+  std::unique_ptr<steerable::TupleReader<float>> Shapes;
   std::unique_ptr<steerable::TupleReader<float>> NormalReader;
   std::unique_ptr<steerable::TupleReader<float>> CurvatureReader;
   std::unique_ptr<steerable::TupleReader<double>> Positions;

@@ -35,6 +35,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <sstream>
@@ -52,6 +53,7 @@ struct Block
   vtkDataSet* DataSet = nullptr;
   vtkDataArray* Array = nullptr;
   bool Cells = false;
+  noise::ShapeArrays ShapeArrays = {};
   noise::Shape Shape;
   /// What a magnified image was made from: interpolated lengths lie between those that are there.
   vtkDataSet* Original = nullptr;
@@ -385,8 +387,41 @@ struct vtkSteerableNoiseFilter::Internals
     if (!block.Array)
     {
       why += " Noise without a direction needs none: set Direction to None.";
+      return false;
     }
-    return block.Array != nullptr;
+    return this->FindShapeArrays(block, why);
+  }
+
+  /// Arrays that properties come from; false with `why` where one is named that cannot be used.
+  bool FindShapeArrays(Block& block, std::string& why) const
+  {
+    constexpr const char* names[] = { "StreakLength", "Strength", "EigenvalueSum" };
+    vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
+    for (int which = 0; which < 3; ++which)
+    {
+      vtkInformation* choice = this->Self->GetInputArrayInformation(STREAK_LENGTH_ARRAY + which);
+      const char* name = choice->Has(vtkDataObject::FIELD_NAME())
+        ? choice->Get(vtkDataObject::FIELD_NAME())
+        : nullptr;
+      if (!name || !*name || std::strcmp(name, "None") == 0)
+      {
+        continue;
+      }
+      vtkDataArray* array = attributes->GetArray(name);
+      if (!array || array->GetNumberOfComponents() > 3 ||
+        array->GetNumberOfTuples() != block.Array->GetNumberOfTuples())
+      {
+        const char* place = block.Cells ? "cells" : "points";
+        why = std::string("Array '") + name + "' for " + names[which] +
+          (array ? " has not 1 to 3 components with a value for each of the "
+                 : " is not on the ") +
+          place + ", where the vectors are. Choose another one, or convert it (" +
+          (block.Cells ? "Point Data to Cell Data" : "Cell Data to Point Data") + ").";
+        return false;
+      }
+      block.ShapeArrays[which] = array;
+    }
+    return true;
   }
 
   void Process(const Block& block, steerable::NoiseParameters parameters,
@@ -395,6 +430,11 @@ struct vtkSteerableNoiseFilter::Internals
   {
     noise::Samples samples(
       block.DataSet, block.Array, block.Cells, block.Shape, magnification, plane, limit);
+    const noise::ShapeArrays& shapes = block.ShapeArrays;
+    if (shapes[0] || shapes[1] || shapes[2])
+    {
+      samples.SetShapes(shapes);
+    }
     const double threshold = parameters.MaskThreshold;
     if (this->Self->TensorUse != TENSOR_DIRECTION && block.Array &&
       noise::IsTensor(block.Array->GetNumberOfComponents()))

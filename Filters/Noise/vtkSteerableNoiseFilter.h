@@ -114,6 +114,20 @@ public:
   vtkGetMacro(Model, int);
   ///@}
 
+  /**
+   * Arrays that StreakLength, Strength and EigenvalueSum come from, sample by sample: input arrays 1, 2 and 3 of
+   * SetInputArrayToProcess, the first for the vectors. They lie where the vectors do; of vectors the length counts.
+   * Values are kept within the property's range, and where they are not finite the property counts. Without a name,
+   * or with "None", it counts everywhere, which is the default.
+   */
+  enum InputArrayType
+  {
+    STEERING_ARRAY = 0,
+    STREAK_LENGTH_ARRAY = 1,
+    STRENGTH_ARRAY = 2,
+    EIGENVALUE_SUM_ARRAY = 3
+  };
+
   ///@{
   /**
    * DIRECTION_FIELD, the default: vectors or tensors steer the noise, and data without them are an error.

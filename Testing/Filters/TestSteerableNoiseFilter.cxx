@@ -1281,6 +1281,92 @@ TEST(SteerableNoiseFilter, TakesThePaperApart)
   EXPECT_NE(messages->Text.find("LatticeWindow"), std::string::npos) << messages->Text;
 }
 
+TEST(SteerableNoiseFilter, LengthStrengthAndSumComeFromArrays)
+{
+  using Filter = vtkSteerableNoiseFilter;
+  for (const bool cells : { false, true })
+  {
+    auto image = MakeImage(40, 30, 1, 1.0, cells);
+    const vtkIdType count = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
+    vtkDataSetAttributes* attributes = image->GetAttributes(cells ? vtkDataObject::CELL : vtkDataObject::POINT);
+    const auto addHalves = [&](const char* name, double left, double right, int components)
+    {
+      vtkNew<vtkDoubleArray> array;
+      array->SetName(name);
+      array->SetNumberOfComponents(components);
+      array->SetNumberOfTuples(count);
+      array->Fill(0.0);
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        array->SetComponent(i, components - 1, i % 2 ? right : left);
+      }
+      attributes->AddArray(array);
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    addHalves("length", 2.0, nan, 1);
+    addHalves("strength", 0.3, 1.0, 1);
+    addHalves("sum", -2.5, 3.2, 3); // a vector's length
+    const auto with = [&](const std::function<void(Filter*)>& configure)
+    {
+      return Noise(image, 5.0,
+        [&](Filter* filter)
+        {
+          filter->FollowCurvatureOff();
+          configure(filter);
+        });
+    };
+    const int place = cells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    const std::vector<float> varied = with(
+      [&](Filter* filter)
+      {
+        filter->SetInputArrayToProcess(Filter::STREAK_LENGTH_ARRAY, 0, 0, place, "length");
+        filter->SetInputArrayToProcess(Filter::STRENGTH_ARRAY, 0, 0, place, "strength");
+        filter->SetInputArrayToProcess(Filter::EIGENVALUE_SUM_ARRAY, 0, 0, place, "sum");
+      });
+    const std::vector<float> left = with(
+      [&](Filter* filter)
+      {
+        filter->SetStreakLength(2.0);
+        filter->SetStrength(0.3);
+        filter->SetEigenvalueSum(2.5);
+        filter->SetInputArrayToProcess(Filter::STRENGTH_ARRAY, 0, 0, place, "None");
+      });
+    const std::vector<float> right = with([](Filter*) {});
+    ASSERT_EQ(varied.size(), static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < varied.size(); ++i)
+    {
+      ASSERT_NEAR(varied[i], (i % 2 ? right : left)[i], 3e-6) << i;
+    }
+    EXPECT_NE(left, right);
+  }
+
+  // The metric has them too; and what cannot be used is told of.
+  auto image = MakeImage(20, 20, 1);
+  vtkNew<vtkFloatArray> length;
+  length->SetName("length");
+  length->SetNumberOfTuples(400);
+  length->Fill(2.0);
+  image->GetPointData()->AddArray(length);
+  vtkNew<Filter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(image);
+  filter->SetFeatureSize(5.0);
+  filter->SetInputArrayToProcess(Filter::STREAK_LENGTH_ARRAY, 0, 0, 0, "length");
+  filter->OutputMetricOn();
+  filter->Update();
+  EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
+  double metric[6];
+  vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))
+    ->GetPointData()->GetArray("Metric")->GetTuple(50, metric);
+  EXPECT_NEAR(metric[0] * metric[1] - metric[3] * metric[3], 0.25 * (3.2 - 0.25 - 1e-4), 1e-6);
+  filter->SetInputArrayToProcess(Filter::STREAK_LENGTH_ARRAY, 0, 0, 0, "");
+  filter->SetInputArrayToProcess(Filter::EIGENVALUE_SUM_ARRAY, 0, 0, 0, "nothing");
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("'nothing' for EigenvalueSum is not on the points"), std::string::npos)
+    << messages->Text;
+}
+
 TEST(SteerableNoiseFilter, OutputMetricIsTheMetric)
 {
   auto image = MakeImage(8, 7, 6);

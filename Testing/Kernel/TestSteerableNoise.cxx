@@ -1383,6 +1383,67 @@ TEST(SteerableNoise, ItsMetricGivesTheSameNoiseAgain)
   ExpectTheSameNoiseOfTheirMetrics<3>(Steering::Tensors);
 }
 
+TEST(SteerableNoise, TakesLengthStrengthAndSumOfEverySample)
+{
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  NoiseParameters weights;
+  weights.Normalize = Normalization::WeightSum;
+  NoiseParameters cells = PaperModel(0);
+  cells.Normalize = Normalization::None;
+  NoiseParameters magnitude;
+  magnitude.StrengthBy = StrengthMode::Magnitude;
+  magnitude.ReferenceMagnitude = 2.0;
+  for (NoiseParameters parameters :
+    { NoiseParameters(), PaperModel(3), weights, cells, magnitude })
+  {
+    parameters.FollowCurvature = false;
+    for (const Steering steering : { Steering::Vectors, Steering::Normals, Steering::Tensors })
+    {
+      RandomSamples samples(120, 30.0, 0.0, 23);
+      samples.Normals[3] = samples.Normals[4] = samples.Normals[5] = 0.0f; // off the surface
+      std::fill_n(samples.Vectors.begin() + 6, 3, 0.0f);                   // without a direction
+      std::vector<float> shapes;
+      for (std::size_t i = 0; i < samples.Count; ++i)
+      {
+        const float a = static_cast<float>(i);
+        shapes.insert(shapes.end(),
+          { 3.0f + 2.9f * std::sin(a), 0.5f + 0.6f * std::sin(2.0f * a), 4.0f + 3.0f * std::sin(3.0f * a) });
+      }
+      std::fill_n(shapes.begin() + 30, 3, nan); // those of the parameters
+      shapes[33] = 1000.0f;                     // its greatest
+      std::vector<double> slow;
+      for (std::size_t i = 0; i < samples.Count; ++i)
+      {
+        NoiseParameters own = parameters;
+        const auto take = [&](double& value, float given, double least, double most)
+        { value = std::isnan(given) ? value : std::clamp<double>(given, least, most); };
+        take(own.StreakLength, shapes[3 * i], 1.0, 20.0);
+        take(own.Strength, shapes[3 * i + 1], 0.0, 1.0);
+        take(own.EigenvalueSum, shapes[3 * i + 2], 2.0,
+          own.Normalize == Normalization::WeightSum ? 4.0 : 16.0);
+        slow.push_back(SteerableNoiseReference<3>(
+          parameters, samples.GetPosition<3>(i), ReferenceMetric<3>(own, samples, i, steering)));
+      }
+      const ContiguousReader<double, 3> positions(samples.Positions.data());
+      const ContiguousReader<float, 3> vectors(samples.Vectors.data());
+      const ContiguousReader<float, 3> normals(samples.Normals.data());
+      const ContiguousReader<float, 6> tensors(samples.Tensors.data());
+      const ContiguousReader<float, 3> shapeReader(shapes.data());
+      Field field;
+      field.Vectors = steering == Steering::Tensors ? nullptr : &vectors;
+      field.Tensors = steering == Steering::Tensors ? &tensors : nullptr;
+      field.Normals = steering == Steering::Normals ? &normals : nullptr;
+      field.Shapes = &shapeReader;
+      std::vector<float> noise(samples.Count);
+      SteerableNoise(parameters, 3)
+        .EvaluatePoints(positions, field, 0, samples.Count, noise.data());
+      EXPECT_LE(LargestDifference(noise, slow),
+        parameters.Normalize == Normalization::WeightSum ? 2e-5 : LooseBound)
+        << static_cast<int>(steering) << ", Quality " << parameters.Quality;
+    }
+  }
+}
+
 TEST(SteerableNoise, IsIsotropicWhereNothingSteers)
 {
   // Zero vectors are isotropic as well, but count as a lack.

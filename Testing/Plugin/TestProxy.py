@@ -155,6 +155,17 @@ for use, expected in (("Metric", 2.0), ("World Metric", 8.0)):
     metric = spots.GetClientSideObject().GetOutput().GetPointData().GetArray("Metric").GetTuple(100)
     pt.check(abs(metric[1] - expected) < 1e-9, "%s keeps the metric: %s" % (use, metric))
     simple.Delete(spots)
+# Length, strength and sum by an array.
+slow = simple.Calculator(Input=wake, AttributeType="Cell Data", ResultArrayName="slow", Function="0.1")
+simple.UpdatePipeline(proxy=slow)
+plain = simple.SteerableNoise(Input=slow, Strength=0.1)
+varied = simple.SteerableNoise(Input=slow)
+pt.check(list(varied.StrengthArray) == ["POINTS", "None"], "no array by default: %s" % varied.StrengthArray)
+varied.StrengthArray = ["CELLS", "slow"]
+for proxy in (plain, varied):
+    simple.UpdatePipeline(proxy=proxy)
+one, other = (pt.array(proxy.GetClientSideObject().GetOutput()) for proxy in (plain, varied))
+pt.check(float(abs(one - other).max()) < 1e-5 and one.std() > 0.5, "StrengthArray is Strength")
 # Without a direction any data will do.
 ball = simple.Sphere()
 clouds = simple.SteerableNoise(Input=ball, Direction="None", FeatureSize=0.2, Octaves=2)

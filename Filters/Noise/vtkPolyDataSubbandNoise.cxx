@@ -7,6 +7,7 @@
 #include "NoiseGhosts.h"
 #include "NoiseThreads.h"
 #include "SubbandNames.h"
+#include "SubbandAnisotropy.h"
 #include "SubbandSurface.h"
 #include "SubbandTiles.h"
 #include "SubbandWeights.h"
@@ -823,13 +824,24 @@ int vtkPolyDataSubbandNoise::RequestData(
     return 0;
   }
 
-  const double anisotropy = finder.IsSteered() ? this->Anisotropy : 1.0;
+  // K directions make features rounder than the metric says: it has to say more.
+  double anisotropy = finder.IsSteered() ? this->Anisotropy : 1.0;
+  double wanted = anisotropy;
+  double mostAnisotropy = std::numeric_limits<double>::infinity();
+  if (finder.IsSteered() && this->Anisotropy > 1.0 && this->Method != NONE)
+  {
+    const steerable::SubbandAnisotropy scale(
+      this->Orientations, static_cast<steerable::WeightMethod>(this->Method));
+    anisotropy = scale.GetSteering(this->Anisotropy);
+    mostAnisotropy = scale.GetMost();
+    wanted = std::min(wanted, mostAnisotropy);
+  }
   const double spacing = GetSpacing(sums, diagonal);
   double wavelength = this->Wavelength;
   if (wavelength <= 0.0)
   {
     wavelength = std::max(bounds.GetSizeInPicture(0.02),
-      noise::SnapSize(PointsPerWavelength * spacing * std::sqrt(anisotropy)));
+      noise::SnapSize(PointsPerWavelength * spacing * std::sqrt(wanted)));
     wavelength = wavelength > 0.0 ? wavelength : 1.0;
   }
   this->ResolvedWavelength = wavelength;
@@ -1009,8 +1021,15 @@ int vtkPolyDataSubbandNoise::RequestData(
   {
     message << "\n" << blocksWithout << " block(s) were passed on without noise. " << finder.Why;
   }
+  if (this->Anisotropy > 1.005 * mostAnisotropy && !blocks.empty())
+  {
+    message << "\nAnisotropy is " << this->Anisotropy << ", but " << this->Orientations
+            << " Orientations make features at most " << std::round(10.0 * mostAnisotropy) / 10.0
+            << " times longer than wide: they are that. Lower Anisotropy"
+            << (this->Orientations < 8 ? ", or raise Orientations." : ".");
+  }
   // Octaves that are too fine fade with AntiAlias.
-  const double thinnest = wavelength / std::sqrt(anisotropy) /
+  const double thinnest = wavelength / std::sqrt(wanted) /
     (this->AntiAlias ? 1.0 : std::ldexp(1.0, this->Octaves - 1));
   if (!blocks.empty() && spacing > 0.0 && thinnest < 0.999 * PointsPerWavelength * spacing)
   {

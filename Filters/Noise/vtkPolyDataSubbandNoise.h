@@ -5,8 +5,8 @@
  * @brief   even noise on surfaces with distorted texture coordinates, steered by a field
  *
  * Takes a vtkPolyData, or a composite of them, of triangles, quads, polygons and strips, and adds one
- * float point array of anisotropic noise (Goldberg, Zwicker and Durand 2008) with variance one, which
- * it makes the active scalars. Everything else is passed on; the input is not written. Other datasets
+ * float point array of anisotropic noise (Goldberg, Zwicker and Durand 2008), which it makes the active scalars. Its
+ * variance is one but for what AntiAlias fades, which is most where points are few for a wavelength. Everything else is passed on; the input is not written. Other datasets
  * of a composite are passed on and counted: extract their surface first.
  *
  * Periodic tiles of noise in bands of direction and scale are looked up at the texture coordinates, and
@@ -78,7 +78,11 @@ public:
   vtkGetMacro(ResolvedWavelength, double);
 
   ///@{
-  /// Length over width of features along the vectors, 1 (isotropic) to 8, default 4.
+  /**
+   * Length over width of features along the vectors, 1 (isotropic) to 8, default 4: the root of the ratio of the
+   * structure tensor's eigenvalues, on average over directions. Orientations limit it, to 4.3 (8), 3.6 (6) and 2.9
+   * (4) by LEAST_SQUARES; where it is more, a warning names the most, which is taken.
+   */
   vtkSetClampMacro(Anisotropy, double, 1.0, 8.0);
   vtkGetMacro(Anisotropy, double);
   ///@}

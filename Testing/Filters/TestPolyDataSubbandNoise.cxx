@@ -514,11 +514,11 @@ TEST(PolyDataSubbandNoise, CopiesOfAPointHaveOneValue)
 
 TEST(PolyDataSubbandNoise, TwoComponentsLieInThePlaneOfTheData)
 {
-  const auto upright = Sheet(65, [](double u, double v) { return Eigen::Vector3d(u, 0.0, v); });
+  const auto upright = Sheet(129, [](double u, double v) { return Eigen::Vector3d(u, 0.0, v); });
   const auto noise = [&](int components, const Eigen::Vector3d& vector)
   {
     AddVectors(upright, false, components, [&](vtkIdType) { return vector; });
-    return Noise(upright, 0.25, [](vtkPolyDataSubbandNoise* filter) { Steer(filter, false); });
+    return Noise(upright, 0.2, [](vtkPolyDataSubbandNoise* filter) { Steer(filter, false); });
   };
   EXPECT_EQ(noise(2, { 0.6, 0.8, 0.0 }), noise(3, { 0.6, 0.0, 0.8 }));
 }
@@ -643,6 +643,59 @@ TEST(PolyDataSubbandNoise, VectorsSteer)
         EXPECT_GT(coherence, 0.6) << texture << cells << components;
       }
     }
+  }
+}
+
+TEST(PolyDataSubbandNoise, AnisotropyIsLengthOverWidth)
+{
+  const int n = 257;
+  struct Case
+  {
+    int Orientations;
+    double Wanted;
+    double Most; // infinite: no warning
+  };
+  const double none = std::numeric_limits<double>::infinity();
+  for (const Case& test : { Case{ 8, 4.0, none }, Case{ 6, 3.0, none }, Case{ 4, 4.0, 2.9 } })
+  {
+    double logarithms = 0.0;
+    constexpr int directions = 3;
+    for (int d = 0; d < directions; ++d)
+    {
+      const double angle = 0.1 + 0.9 * d;
+      const Eigen::Vector3d direction(std::cos(angle), std::sin(angle), 0.0);
+      Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+      for (int seed = 0; seed < 2; ++seed)
+      {
+        auto mesh = Sheet(n, Flat, CellKind::Quads, 1.0, true);
+        AddVectors(mesh, false, 3, [&](vtkIdType) { return direction; });
+        vtkNew<vtkPolyDataSubbandNoise> filter;
+        auto messages = Listen(filter);
+        filter->SetInputData(mesh);
+        filter->SetWavelength(0.1);
+        Steer(filter, false);
+        filter->SetAnisotropy(test.Wanted);
+        filter->SetOrientations(test.Orientations);
+        filter->SetSeed(seed);
+        filter->SetAntiAlias(false);
+        filter->Update();
+        EXPECT_EQ(messages->Warnings, std::isinf(test.Most) ? 0 : 1) << messages->Text;
+        if (!std::isinf(test.Most))
+        {
+          std::ostringstream named;
+          named << "at most " << test.Most << " times";
+          EXPECT_NE(messages->Text.find(named.str()), std::string::npos) << messages->Text;
+        }
+        tensor += StructureTensor(Values(filter->GetOutputDataObject(0), "SubbandNoise"), n);
+      }
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(tensor);
+      logarithms +=
+        0.5 * std::log(solver.eigenvalues()[1] / solver.eigenvalues()[0]) / directions;
+    }
+    const double measured = std::exp(logarithms);
+    const double wanted = std::min(test.Wanted, test.Most);
+    std::printf("K = %d, wanted %.1f: length over width %.2f\n", test.Orientations, test.Wanted, measured);
+    EXPECT_NEAR(measured / wanted, 1.0, 0.1) << test.Orientations << ", " << test.Wanted;
   }
 }
 

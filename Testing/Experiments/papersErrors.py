@@ -4,10 +4,12 @@
 
 Needs nothing but Python: `python3 Testing/Experiments/papersErrors.py`. Stops at the first figure that is not so.
 """
-import cmath
+import glob
 import itertools
 import math
+import os
 import random
+import re
 
 
 def check(what, condition, figure=""):
@@ -197,3 +199,13 @@ apex = (base + 1) % 256
 check("Lecture: in the last cell the offset from the apex", p - apex == 255.25 and p - (base + 1) == -0.75,
       "%.2f cells instead of %.2f" % (p - apex, p - (base + 1)))
 check("Lecture: and base is not wrapped at all", math.floor(256.5) == 256, "row 256 of a table of 256")
+
+# ---- the page itself -------------------------------------------------------------------------------
+project = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+with open(os.path.join(project, "Documentation", "papers.md")) as page:
+    named = set(re.findall(r"`([A-Z][A-Za-z]+\.[A-Z][A-Za-z]+)`", page.read())) - {"Experiments.PapersErrors"}
+tests = set()
+for path in glob.glob(os.path.join(project, "Testing", "*", "Test*.cxx")):
+    with open(path) as source:
+        tests |= {"%s.%s" % pair for pair in re.findall(r"^TEST(?:_[FP])?\((\w+), (\w+)\)", source.read(), re.M)}
+check("papers.md: tests that it names exist", len(named) > 30 and named <= tests, "%d; missing: %s" % (len(named), sorted(named - tests)))

@@ -335,6 +335,8 @@ struct Evaluator
   float* Noise = nullptr;
   float* WeightArray = nullptr;
   float* Distortion = nullptr;
+  /// Weights of the user's own, one tuple a point of all planes' bands; null: those of the metric.
+  vtkDataArray* OwnWeights = nullptr;
 
   // The points of a chunk that one set of tiles contributes to.
   struct Plane
@@ -360,13 +362,21 @@ struct Evaluator
   /// Adds a point with this metric, in squared repeats of the tile; tells whether it was clamped.
   bool AddPoint(Plane& plane, vtkIdType point, const Eigen::Vector2d& texture,
     const Eigen::Matrix2d& metric, const Eigen::Matrix2d& footprint, double blend,
-    PointCounts& counts) const
+    PointCounts& counts, vtkIdType first, int axis) const
   {
     const int components = this->Components();
     double gamma[MaximumBands];
     if (!texture.allFinite() || !this->Weights.Compute(metric, gamma))
     {
       return false;
+    }
+    if (this->OwnWeights)
+    {
+      for (int c = 0; c < components; ++c)
+      {
+        const double own = this->OwnWeights->GetComponent(first + point, axis * components + c);
+        gamma[c] = std::isfinite(own) ? own / blend : 0.0;
+      }
     }
     plane.Points.push_back(point);
     plane.Texture.push_back(texture);
@@ -449,7 +459,7 @@ struct Evaluator
     const double scale = repeats * this->Wavelength;
     counts.Clamped = this->AddPoint(plane, point - first, repeats * surface.GetTexture(point),
       metrics.Metric * (scale * scale),
-      metrics.Isotropic * (repeats * repeats * metrics.SquaredSpacing), 1.0, counts);
+      metrics.Isotropic * (repeats * repeats * metrics.SquaredSpacing), 1.0, counts, first, 0);
   }
 
   void AddProjected(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
@@ -480,7 +490,8 @@ struct Evaluator
         const Eigen::Vector2d texture(place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]);
         const bool clamped = this->AddPoint(planes[axis], point - first, texture,
           steerable::SurfaceMetric(gradients, feature),
-          gradients.transpose() * gradients * features.SquaredSpacing, blend[axis], counts);
+          gradients.transpose() * gradients * features.SquaredSpacing, blend[axis], counts, first,
+          axis);
         counts.Clamped = counts.Clamped || clamped;
       }
     }
@@ -674,6 +685,11 @@ vtkPolyDataSubbandNoise::~vtkPolyDataSubbandNoise()
 void vtkPolyDataSubbandNoise::SetOrientations(int orientations)
 {
   const int allowed = noise::AllowedOrientations(orientations);
+  if (allowed != orientations)
+  {
+    vtkWarningMacro("Orientations can be 3, 4, 6 or 8, not " << orientations << ": " << allowed
+                                                             << " was taken.");
+  }
   if (this->Orientations != allowed)
   {
     this->Orientations = allowed;
@@ -867,6 +883,13 @@ int vtkPolyDataSubbandNoise::RequestData(
   const bool folds = foldedArea <= LargestFoldedShare * mapped;
 
   PointCounts counts;
+  std::string ownWeights;
+  vtkInformation* weightsChoice = this->GetInputArrayInformation(1);
+  if (weightsChoice->Has(vtkDataObject::FIELD_NAME()))
+  {
+    const char* name = weightsChoice->Get(vtkDataObject::FIELD_NAME());
+    ownWeights = name && std::strcmp(name, "None") != 0 ? name : "";
+  }
   double textureRepeats = 1.0;
   try
   {
@@ -900,6 +923,7 @@ int vtkPolyDataSubbandNoise::RequestData(
         parameters.Pyramid = layout.Pyramid;
         parameters.Method = static_cast<steerable::WeightMethod>(this->Method);
         parameters.FixedScale = layout.FixedScale;
+        parameters.RadialTriple = this->RadialTriple;
         solvers[textured] = std::make_unique<steerable::SubbandWeights>(parameters);
       }
       const auto& tiles = (textured ? this->Cache->TextureTiles : this->Cache->PlaneTiles)
@@ -924,6 +948,20 @@ int vtkPolyDataSubbandNoise::RequestData(
       auto result = noise::NewOutputArray(this->ResultArrayName, 1, points);
       evaluator.Noise = result->GetPointer(0);
       vtkPointData* pointData = block.Mesh->GetPointData();
+      if (!ownWeights.empty())
+      {
+        const int needed = planes * layout.Pyramid.Components();
+        vtkDataArray* array = pointData->GetArray(ownWeights.c_str());
+        if (!array || array->GetNumberOfComponents() != needed ||
+          array->GetNumberOfTuples() != points)
+        {
+          throw std::invalid_argument("Weights '" + ownWeights + "' are not on the points with " +
+            std::to_string(needed) + " components (" + std::to_string(layout.Pyramid.Orientations) +
+            " orientations, " + std::to_string(layout.Pyramid.Scales) + " scales" +
+            (textured ? "" : ", 3 planes") + "). OutputWeights adds such an array to begin with.");
+        }
+        evaluator.OwnWeights = array;
+      }
       if (this->OutputWeights)
       {
         const int components = layout.Pyramid.Components();
@@ -1056,6 +1094,7 @@ void vtkPolyDataSubbandNoise::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Parameterization: " << this->Parameterization << "\n";
   os << indent << "Method: " << this->Method << "\n";
   os << indent << "Orientations: " << this->Orientations << "\n";
+  os << indent << "RadialTriple: " << this->RadialTriple << "\n";
   os << indent << "Octaves: " << this->Octaves << "\n";
   os << indent << "Persistence: " << this->Persistence << "\n";
   os << indent << "Function: " << this->Function << "\n";

@@ -62,6 +62,10 @@ public:
   /**
    * The array that steers the noise is chosen by SetInputArrayToProcess(0, ...), on points or cells.
    * Without it, or with the names "" and "None", nothing steers.
+   *
+   * SetInputArrayToProcess(1, ...) chooses weights of the user's own, on points: an array as OutputWeights adds it, with
+   * a component for each band, which takes the place of the weights of every octave. They are used as they are, and
+   * AntiAlias, if it is on, fades them. Without a name, or with "None", weights come from the metric.
    */
 
   ///@{
@@ -106,9 +110,22 @@ public:
   ///@}
 
   ///@{
-  /// Directions of the bands: 4, 6 or 8, default 8, follow stretches of 2:1, 3:1 and 4:1.
+  /**
+   * Directions of the bands: 3, 4, 6 or 8, default 8, follow stretches of 1.5:1, 2:1, 3:1 and 4:1; others become one of
+   * these, with a warning.
+   */
   void SetOrientations(int orientations);
   vtkGetMacro(Orientations, int);
+  ///@}
+
+  ///@{
+  /**
+   * Heuristic weights, and heuristic antialiasing, from three radii of a band instead of one, default off: less
+   * aliasing where samples see the texture at a grazing angle. It counts with Method HEURISTIC only.
+   */
+  vtkSetMacro(RadialTriple, bool);
+  vtkGetMacro(RadialTriple, bool);
+  vtkBooleanMacro(RadialTriple, bool);
   ///@}
 
   ///@{
@@ -217,6 +234,7 @@ protected:
   int Parameterization = AUTOMATIC;
   int Method = LEAST_SQUARES;
   int Orientations = 8;
+  bool RadialTriple = false;
   int Octaves = 1;
   double Persistence = 0.7;
   int Function = FRACTAL;

@@ -148,7 +148,7 @@ def solve(A, b):
 
 
 thetas = [2.0 * math.pi * n / 360 for n in range(360)]
-for K, printed in ((4, 0.29), (6, 0.16), (8, 0.09)):
+for K, printed in ((3, 0.328), (4, 0.29), (6, 0.16), (8, 0.09)):
     check("Goldberg: with 2^(K-1) the %d filters add up to 1" % K,
           max(abs(sum(angular(i, K, t) for i in range(K)) - 1.0) for t in thetas) < 1e-12)
     check("Goldberg: with 2^(i-1) they don't",

@@ -699,6 +699,98 @@ TEST(PolyDataSubbandNoise, AnisotropyIsLengthOverWidth)
   }
 }
 
+TEST(PolyDataSubbandNoise, TakesWeightsOfTheUsersOwn)
+{
+  for (const bool texture : { true, false })
+  {
+    auto mesh = Sheet(129, Flat, CellKind::Triangles, 1.0, texture);
+    const auto configure = [](vtkPolyDataSubbandNoise* filter)
+    {
+      filter->SetAntiAlias(false);
+      filter->OutputWeightsOn();
+      filter->SetOctaves(2);
+    };
+    auto first = AddNoise(mesh, 0.2, configure);
+    const std::vector<float> expected = Values(first, "SubbandNoise");
+    const auto withOwn = [&](vtkPolyDataSubbandNoise* filter)
+    {
+      filter->SetAntiAlias(false);
+      filter->SetOctaves(2);
+      filter->SetInputArrayToProcess(
+        1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "SubbandWeights");
+    };
+    // The filter's own give its noise again; half of them half the noise.
+    const std::vector<float> again = Noise(first, 0.2, withOwn);
+    EXPECT_LE(LargestDifference(again, expected), 1e-5);
+    vtkDataArray* weights = first->GetPointData()->GetArray("SubbandWeights");
+    for (vtkIdType i = 0; i < weights->GetNumberOfTuples(); ++i)
+    {
+      for (int c = 0; c < weights->GetNumberOfComponents(); ++c)
+      {
+        weights->SetComponent(i, c, 0.5 * weights->GetComponent(i, c));
+      }
+    }
+    std::vector<float> half = Noise(first, 0.2, withOwn);
+    for (float& value : half)
+    {
+      value *= 2.0f;
+    }
+    EXPECT_LE(LargestDifference(half, expected), 1e-5);
+    EXPECT_GT(Deviation(expected), 0.5);
+  }
+
+  // Others are refused with the number that is needed.
+  auto mesh = FlatSheet();
+  vtkNew<vtkFloatArray> wrong;
+  wrong->SetName("weights");
+  wrong->SetNumberOfComponents(5);
+  wrong->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  wrong->Fill(1.0);
+  mesh->GetPointData()->AddArray(wrong);
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(mesh);
+  filter->SetWavelength(0.2);
+  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "weights");
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("8 orientations"), std::string::npos) << messages->Text;
+}
+
+TEST(PolyDataSubbandNoise, RadialTripleCountsForTheHeuristic)
+{
+  auto mesh = FlatSheet();
+  const auto noise = [&](int method, bool triple)
+  {
+    return Noise(mesh, 0.2,
+      [=](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetMethod(method);
+        filter->SetRadialTriple(triple);
+      });
+  };
+  using Filter = vtkPolyDataSubbandNoise;
+  EXPECT_NE(noise(Filter::HEURISTIC, true), noise(Filter::HEURISTIC, false));
+  EXPECT_EQ(noise(Filter::LEAST_SQUARES, true), noise(Filter::LEAST_SQUARES, false));
+  EXPECT_TRUE(AllFinite(noise(Filter::HEURISTIC, true)));
+}
+
+TEST(PolyDataSubbandNoise, ThreeOrientationsAreOffered)
+{
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(FlatSheet(129));
+  filter->SetWavelength(0.15);
+  filter->SetOrientations(3);
+  filter->SetAntiAlias(false);
+  filter->Update();
+  EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
+  EXPECT_NEAR(Deviation(Values(filter->GetOutputDataObject(0), "SubbandNoise")), 1.0, 0.15);
+  filter->SetOrientations(7);
+  EXPECT_EQ(filter->GetOrientations(), 6);
+  EXPECT_EQ(messages->Warnings, 1);
+}
+
 TEST(PolyDataSubbandNoise, AnisotropyOneIsUnsteered)
 {
   auto mesh = FlatSheet();
@@ -1222,6 +1314,7 @@ TEST(PolyDataSubbandNoise, SettersClamp)
   vtkNew<vtkPolyDataSubbandNoise> filter;
   filter->SetAnisotropy(100.0);
   EXPECT_EQ(filter->GetAnisotropy(), 8.0);
+  auto messages = Listen(filter); // 5 is not offered, and told of
   filter->SetOrientations(5);
   EXPECT_EQ(filter->GetOrientations(), 4);
   filter->SetOctaves(0);

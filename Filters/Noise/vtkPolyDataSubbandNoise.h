@@ -31,6 +31,8 @@
 #include "SteerableNoiseFiltersModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
 
+#include <string>
+
 class vtkMultiProcessController;
 
 class STEERABLENOISEFILTERS_EXPORT vtkPolyDataSubbandNoise : public vtkPassInputTypeAlgorithm
@@ -59,6 +61,14 @@ public:
     TURBULENCE = 1
   };
 
+  enum InputArrayType
+  {
+    STEERING_ARRAY = 0,
+    WEIGHTS_ARRAY = 1,
+    WAVELENGTH_ARRAY = 2,
+    ANISOTROPY_ARRAY = 3
+  };
+
   /**
    * The array that steers the noise is chosen by SetInputArrayToProcess(0, ...), on points or cells.
    * Without it, or with the names "" and "None", nothing steers.
@@ -66,6 +76,11 @@ public:
    * SetInputArrayToProcess(1, ...) chooses weights of the user's own, on points: an array as OutputWeights adds it, with
    * a component for each band, which takes the place of the weights of every octave. They are used as they are, and
    * AntiAlias, if it is on, fades them. Without a name, or with "None", weights come from the metric.
+   *
+   * SetInputArrayToProcess(2, ...) and (3, ...) choose arrays on points that Wavelength and Anisotropy come from, point by
+   * point: values of one component, lengths of 2 or 3, so the steering vectors themselves may say how long features are.
+   * Wavelengths that are not positive and finite, and anisotropies that are not finite, are those of the properties;
+   * the others are kept from 1 to 8. All blocks must have them.
    */
 
   ///@{
@@ -251,6 +266,9 @@ protected:
 private:
   vtkPolyDataSubbandNoise(const vtkPolyDataSubbandNoise&) = delete;
   void operator=(const vtkPolyDataSubbandNoise&) = delete;
+
+  /// Of an input array, empty where none is chosen.
+  std::string GetArrayName(int which);
 
   struct Internals;
   Internals* Cache; // tiles, kept while their parameters stand

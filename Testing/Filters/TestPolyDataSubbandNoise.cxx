@@ -699,6 +699,131 @@ TEST(PolyDataSubbandNoise, AnisotropyIsLengthOverWidth)
   }
 }
 
+/// A point array of one or more components, of which the last holds the value.
+void AddValues(vtkPolyData* mesh, const char* name, int components,
+  const std::function<double(vtkIdType)>& value)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  array->Fill(0.0);
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    array->SetComponent(i, components - 1, value(i));
+  }
+  mesh->GetPointData()->AddArray(array);
+}
+
+TEST(PolyDataSubbandNoise, WavelengthAndAnisotropyComeFromArrays)
+{
+  using Filter = vtkPolyDataSubbandNoise;
+  const auto choose = [](Filter* filter, int which, const char* name) {
+    filter->SetInputArrayToProcess(
+      which, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
+  };
+  const int n = 129;
+  for (const bool texture : { true, false })
+  {
+    // The same value everywhere is the property; what is not one is the property's.
+    auto mesh = Sheet(n, Flat, CellKind::Triangles, 1.0, texture);
+    AddVectors(mesh, false, 3, [](vtkIdType) { return Eigen::Vector3d(0.6, 0.8, 0.0); });
+    AddValues(mesh, "wavelength", 1, [](vtkIdType i) { return i % 7 ? 0.2 : -1.0; });
+    AddValues(mesh, "length", 3, [](vtkIdType i) { return i % 5 ? -2.5 : NaN; });
+    const std::vector<float> expected = Noise(mesh, 0.2,
+      [&](Filter* filter)
+      {
+        Steer(filter, false);
+        filter->SetAnisotropy(2.5);
+      });
+    EXPECT_EQ(Noise(mesh, 0.2,
+                [&](Filter* filter)
+                {
+                  Steer(filter, false);
+                  filter->SetAnisotropy(2.5);
+                  choose(filter, Filter::WAVELENGTH_ARRAY, "wavelength");
+                  choose(filter, Filter::ANISOTROPY_ARRAY, "length");
+                }),
+      expected);
+
+    // Twice the wavelength on one side: half as steep. Longer features on one side: more coherent.
+    double steep[2] = { 0.0, 0.0 };
+    double power[2] = { 0.0, 0.0 };
+    Eigen::Matrix2d tensor[2] = { Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero() };
+    for (int seed = 0; seed < 4; ++seed)
+    {
+      for (const bool lengths : { false, true })
+      {
+        AddValues(mesh, "wavelength", 1, [&](vtkIdType i) { return i % n < n / 2 ? 0.1 : 0.2; });
+        AddValues(mesh, "length", 1, [&](vtkIdType i) { return i % n < n / 2 ? 1.0 : 4.0; });
+        const std::vector<float> noise = Noise(mesh, lengths ? 0.2 : 0.1,
+          [&](Filter* filter)
+          {
+            filter->SetAntiAlias(false);
+            filter->SetSeed(seed);
+            if (lengths)
+            {
+              Steer(filter, false);
+              choose(filter, Filter::ANISOTROPY_ARRAY, "length");
+            }
+            else
+            {
+              choose(filter, Filter::WAVELENGTH_ARRAY, "wavelength");
+            }
+          });
+        for (int y = 1; y + 1 < n; ++y)
+        {
+          for (int x = 1; x + 1 < n; ++x)
+          {
+            const int side = x < n / 2;
+            if (std::abs(x - n / 2) < 2)
+            {
+              continue; // the step between the sides
+            }
+            const Eigen::Vector2d g(0.5 * (noise[y * n + x + 1] - noise[y * n + x - 1]),
+              0.5 * (noise[(y + 1) * n + x] - noise[(y - 1) * n + x]));
+            if (lengths)
+            {
+              tensor[side] += g * g.transpose();
+            }
+            else
+            {
+              steep[side] += g.squaredNorm();
+              power[side] += noise[y * n + x] * noise[y * n + x];
+            }
+          }
+        }
+      }
+    }
+    EXPECT_NEAR(std::sqrt(steep[1] / power[1] / (steep[0] / power[0])), 2.0, 0.3) << texture;
+    const auto ratio = [](const Eigen::Matrix2d& t)
+    {
+      const Eigen::Vector2d values =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(t).eigenvalues();
+      return std::sqrt(values[1] / values[0]);
+    };
+    EXPECT_NEAR(ratio(tensor[1]), 1.0, 0.25) << texture;
+    EXPECT_NEAR(ratio(tensor[0]), 4.0, 0.8) << texture;
+  }
+
+  // More than the orientations can do, and arrays that are not there, are told of.
+  auto mesh = FlatSheet(129);
+  AddVectors(mesh, false, 3, [](vtkIdType) { return Eigen::Vector3d(0.6, 0.8, 0.0); });
+  AddValues(mesh, "length", 1, [](vtkIdType i) { return i == 5 ? 7.0 : 1.0; });
+  vtkNew<Filter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(mesh);
+  filter->SetWavelength(0.2);
+  Steer(filter, false);
+  choose(filter, Filter::ANISOTROPY_ARRAY, "length");
+  filter->Update();
+  EXPECT_NE(messages->Text.find("Anisotropy is 7"), std::string::npos) << messages->Text;
+  choose(filter, Filter::WAVELENGTH_ARRAY, "nothing");
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("'nothing' for Wavelength"), std::string::npos) << messages->Text;
+}
+
 TEST(PolyDataSubbandNoise, TakesWeightsOfTheUsersOwn)
 {
   for (const bool texture : { true, false })

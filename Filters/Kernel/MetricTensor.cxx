@@ -44,6 +44,18 @@ EigenvalueRange SurfaceEigenvalues(const NoiseParameters& parameters)
   return { along, std::max(along, across) };
 }
 
+NoiseParameters WithShape(const NoiseParameters& parameters, const float* shape)
+{
+  NoiseParameters own = parameters;
+  const auto take = [](double& value, double given, double least, double most)
+  { value = std::isfinite(given) ? std::min(std::max(given, least), most) : value; };
+  take(own.StreakLength, shape[0], 1.0, 20.0);
+  take(own.Strength, shape[1], 0.0, 1.0);
+  take(own.EigenvalueSum, shape[2], 2.0,
+    parameters.Normalize == Normalization::WeightSum ? 4.0 : 16.0);
+  return own;
+}
+
 double StrengthOf(const NoiseParameters& parameters, double magnitude)
 {
   if (parameters.StrengthBy == StrengthMode::Magnitude)
@@ -152,6 +164,44 @@ AxialMetric<N> MetricFromTensor(
 }
 
 template <int N>
+AxialMetric<N> MetricFromMetric(
+  const NoiseParameters& parameters, const Matrix<N>& tensor, double norm, bool* bounded)
+{
+  AxialMetric<N> metric;
+  const double largest = tensor.cwiseAbs().maxCoeff();
+  if (!(largest > 0.0) || !tensor.allFinite())
+  {
+    return metric;
+  }
+  // Not the direct solver, which loses half of the digits where two eigenvalues are alike.
+  const Matrix<N> scaled = tensor / largest;
+  const Eigen::SelfAdjointEigenSolver<Matrix<N>> solver(0.5 * (scaled + scaled.transpose()));
+  const Vector<N> lambda = largest * solver.eigenvalues(); // in increasing order
+  const double strength = StrengthOf(parameters, norm);
+  const EigenvalueRange bounds = MetricBounds(parameters);
+  const auto bound = [&](double eigenvalue)
+  { return Blend(std::min(std::max(eigenvalue, bounds.Along), bounds.Across), strength); };
+  const double rounding = 1e-6;
+  if (bounded)
+  {
+    *bounded = lambda[0] < (1.0 - rounding) * bounds.Along ||
+      lambda[N - 1] > (1.0 + rounding) * bounds.Across;
+  }
+  metric.Direction = solver.eigenvectors().col(0).normalized();
+  metric.Along = bound(lambda[0]);
+  metric.Across = bound(lambda[N - 1]);
+  metric.SecondAxis = N == 2 ? Vector<N>(metric.Direction.unitOrthogonal())
+                             : Vector<N>(solver.eigenvectors().col(N / 2).normalized());
+  metric.Second = N == 2 ? metric.Across : bound(lambda[N / 2]);
+  const double spread = lambda[N - 1] - lambda[0];
+  metric.Clarity = !(spread > 1e-7 * largest) ? 0.0
+    : N == 2                                  ? 1.0
+                                              : (lambda[N / 2] - lambda[0]) / spread;
+  metric.Degenerate = false;
+  return metric;
+}
+
+template <int N>
 void ApplyCurvature(AxialMetric<N>& metric, const Vector<N>& curvature)
 {
   if (metric.Degenerate || !curvature.allFinite())
@@ -178,6 +228,10 @@ template AxialMetric<2> MetricFromTensor<2>(const NoiseParameters&, const Matrix
 template AxialMetric<3> MetricFromTensor<3>(const NoiseParameters&, const Matrix<3>&);
 template AxialMetric<2> MetricFromTensor<2>(const NoiseParameters&, const Matrix<2>&, double);
 template AxialMetric<3> MetricFromTensor<3>(const NoiseParameters&, const Matrix<3>&, double);
+template AxialMetric<2> MetricFromMetric<2>(
+  const NoiseParameters&, const Matrix<2>&, double, bool*);
+template AxialMetric<3> MetricFromMetric<3>(
+  const NoiseParameters&, const Matrix<3>&, double, bool*);
 template void ApplyCurvature<2>(AxialMetric<2>&, const Vector<2>&);
 template void ApplyCurvature<3>(AxialMetric<3>&, const Vector<3>&);
 } // namespace steerable

@@ -65,6 +65,12 @@ struct AxialMetric
   }
 };
 
+/**
+ * Parameters with the StreakLength, Strength and EigenvalueSum of one sample, kept within their ranges; what is not
+ * finite is that of all samples. Along with them goes the sum's limit of 4 where weights divide.
+ */
+NoiseParameters WithShape(const NoiseParameters& parameters, const float* shape);
+
 /// Strength in [0, 1] of a vector or tensor of this magnitude.
 double StrengthOf(const NoiseParameters& parameters, double magnitude);
 
@@ -90,7 +96,8 @@ inline double WholeLength(double inPlane, double across)
 }
 
 /// The rest of a tensor, XX YY ZZ XY YZ XZ, whose plane is x-y.
-inline double AcrossPlane(const float* tuple)
+template <typename Value>
+double AcrossPlane(const Value* tuple)
 {
   const double inRow = std::hypot(double(tuple[4]), double(tuple[5]));
   return std::sqrt(double(tuple[2]) * tuple[2] + 2.0 * inRow * inRow);
@@ -115,9 +122,27 @@ template <int N>
 AxialMetric<N> MetricFromTensor(
   const NoiseParameters& parameters, const Matrix<N>& inPlane, double norm);
 
-/// Symmetric tensor from 6 components, XX YY ZZ XY YZ XZ.
+/**
+ * Eigenvalues between which a metric of the user's own is taken as it is. The least, 1/400, reaches as far as the
+ * longest streak; with LatticeWindow, which ends surflets anyway, 1/1000.
+ */
+inline EigenvalueRange MetricBounds(const NoiseParameters& parameters)
+{
+  return { parameters.LatticeWindow ? 1e-3 : 1.0 / 400.0, 16.0 };
+}
+
+/**
+ * Symmetric part of a metric in units of 1 / cells² (Rice: "a metric tensor G of the users choice"), at the given
+ * Strength but otherwise as it is: eigenvalues beyond MetricBounds are moved to them, `bounded` then. Zero and what
+ * is not finite is no metric. `norm` is that of the whole tensor where this is its part in a plane.
+ */
 template <int N>
-Matrix<N> TensorOf(const float* tuple)
+AxialMetric<N> MetricFromMetric(
+  const NoiseParameters& parameters, const Matrix<N>& metric, double norm, bool* bounded = nullptr);
+
+/// Symmetric tensor from 6 components, XX YY ZZ XY YZ XZ.
+template <int N, typename Value>
+Matrix<N> TensorOf(const Value* tuple)
 {
   Matrix<N> tensor;
   if constexpr (N == 2)

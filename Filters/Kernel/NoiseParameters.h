@@ -90,6 +90,8 @@ struct NoiseParameters
   double MinimumEigenvalue = 0.5;
   /// Off: no fade by the metric's distance. With Strength 0 that is Kensler's isotropic noise.
   bool AnisotropicWeight = true;
+  /// Off: gradients are projected on the plain offset, without the metric (Rice, Fig. 2).
+  bool MetricInProjection = true;
 
   /// 0: isotropic metric, 1: fully anisotropic.
   double Strength = 1.0;

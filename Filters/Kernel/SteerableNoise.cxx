@@ -40,11 +40,18 @@ HWY_EXPORT(EvaluatePoints3);
 
 namespace
 {
-NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field, bool curved)
+NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool curved)
 {
-  if ((field.Vectors == nullptr) == (field.Tensors == nullptr))
+  if ((field.Vectors != nullptr) + (field.Tensors != nullptr) + (field.Metrics != nullptr) +
+      field.Isotropic !=
+    1)
   {
-    throw std::invalid_argument("The noise needs vectors or tensors, one of the two.");
+    throw std::invalid_argument(
+      "The noise needs vectors, tensors, metrics or nothing to steer it, one of them.");
+  }
+  if (field.Isotropic && p.Surflet == Basis::Streaks)
+  {
+    throw std::invalid_argument("Streaks need a direction: take another Basis, or vectors.");
   }
   if (field.Normals && (dimension != 3 || !field.Vectors))
   {
@@ -52,6 +59,15 @@ NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field
   }
 
   NoiseSetup setup;
+  setup.Isotropic = field.Isotropic;
+  if (field.Isotropic)
+  {
+    // What goes by the vectors, of which there are none.
+    p.Strength = 0.0;
+    p.StrengthBy = StrengthMode::Constant;
+    p.MaskThreshold = 0.0;
+    curved = false;
+  }
   setup.Parameters = p;
   double amplitude = 1.0;
   double frequency = 1.0;
@@ -77,14 +93,18 @@ NoiseSetup MakeSetup(const NoiseParameters& p, int dimension, const Field& field
   setup.Support = static_cast<float>(FadeSupport(p.Interpolant));
   setup.WindowReach =
     p.LatticeWindow ? setup.Support * (p.Quality + 1) : std::numeric_limits<float>::infinity();
-  setup.Variant = p.Surflet != Basis::Gradient || p.Interpolant != Fade::Quintic ||
-    p.Window != Falloff::Separable || p.Grid != Lattice::Square ||
-    p.Gradients != GradientSet::Uniform || p.Motion || !p.AnisotropicWeight;
-  setup.Biaxial = dimension == 3 && (field.Tensors || field.Normals);
+  const bool gradients = p.Surflet == Basis::Gradient && p.Window == Falloff::Separable &&
+    p.Grid == Lattice::Square && !p.Motion;
+  const bool plain = gradients && p.Interpolant == Fade::Quintic &&
+    p.Gradients == GradientSet::Uniform && p.AnisotropicWeight && p.MetricInProjection;
+  setup.Variant = !plain;
+  // Perlin's own noise, also with a metric in the projection.
+  const bool unweighted = gradients && p.Interpolant != Fade::Wide && !p.AnisotropicWeight;
+  setup.Biaxial = dimension == 3 && (field.Tensors || field.Metrics || field.Normals);
   setup.Curved = curved;
-  setup.SingleCell = p.Quality == 0 && !setup.Variant && p.LatticeWindow && !setup.Biaxial &&
+  setup.SingleCell = p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial &&
     !curved && p.Normalize == Normalization::None;
-  setup.Uniform = setup.SingleCell && p.StrengthBy == StrengthMode::Constant &&
+  setup.Uniform = setup.SingleCell && (!field.Shapes || field.Isotropic) && p.StrengthBy == StrengthMode::Constant &&
     !(p.MaskThreshold > 0.0) && p.Octaves == 1 && !p.Turbulence;
   setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;
   const bool jittered = p.Grid == Lattice::Jittered;

@@ -52,13 +52,19 @@ private:
   const T* Tuples;
 };
 
-/// What steers the noise: vectors or tensors, one of the two.
+/// What steers the noise: vectors, tensors, metrics or nothing, one of them.
 struct Field
 {
+  /// Nothing steers: isotropic noise, and no sample counts as one without a direction.
+  bool Isotropic = false;
   /// 3 components; in 2D the third counts for the length alone, which masks and Strength go by.
   const TupleReader<float>* Vectors = nullptr;
   /// 6 components, XX YY ZZ XY YZ XZ; in 2D those with a Z count for the norm alone.
   const TupleReader<float>* Tensors = nullptr;
+  /// 6 components as Tensors, the metric itself in 1 / cells²: see MetricFromMetric.
+  const TupleReader<double>* Metrics = nullptr;
+  /// 3 components, StreakLength, Strength and EigenvalueSum of each sample; null: those of the parameters.
+  const TupleReader<float>* Shapes = nullptr;
   /// 3 components, surface normals of any length: asks for the metric of surfaces, 3D only.
   const TupleReader<float>* Normals = nullptr;
   /// 3 components, (u . grad) u in 1 / world units; for points only, images find it themselves.
@@ -93,6 +99,8 @@ struct EvaluationCounts
   std::uint64_t Degenerate = 0;
   /// Samples at or below MaskThreshold: they got 0.
   std::uint64_t Stagnant = 0;
+  /// Metrics of the user's own whose eigenvalues were bounded.
+  std::uint64_t Bounded = 0;
   /// Corners that were evaluated, over all samples and octaves.
   std::uint64_t VisitedCorners = 0;
 
@@ -100,6 +108,7 @@ struct EvaluationCounts
   {
     this->Degenerate += other.Degenerate;
     this->Stagnant += other.Stagnant;
+    this->Bounded += other.Bounded;
     this->VisitedCorners += other.VisitedCorners;
     return *this;
   }

@@ -8,8 +8,10 @@ class GradientRows
 {
 public:
   /// Columns [firstColumn, firstColumn + columns).
-  GradientRows(const OctaveSetup& octave, std::int64_t firstColumn, std::size_t columns)
+  GradientRows(const OctaveSetup& octave, GradientSet gradients, std::int64_t firstColumn,
+    std::size_t columns)
     : Octave(octave)
+    , GradientsOf(gradients)
     , FirstColumn(firstColumn)
     , Stride((columns + Lanes - 1) / Lanes * Lanes + Lanes)
     , Gradients(static_cast<std::size_t>(Slots) * N * Stride)
@@ -56,7 +58,15 @@ private:
           WrapToPeriod(this->FirstColumn + static_cast<std::int64_t>(i + lane), period[0]);
       }
       V g[N];
-      UniformGradient(HashJoinAxes(hn::Xor(HashOneAxis(hn::Load(DU(), column), 0), rowHash)), g);
+      const VU hash = HashJoinAxes(hn::Xor(HashOneAxis(hn::Load(DU(), column), 0), rowHash));
+      if (this->GradientsOf == GradientSet::Perlin)
+      {
+        PerlinGradient<N>(hash, g);
+      }
+      else
+      {
+        UniformGradient(hash, g);
+      }
       for (int axis = 0; axis < N; ++axis)
       {
         hn::StoreU(g[axis], DF(), gradients + axis * this->Stride + i);
@@ -65,6 +75,7 @@ private:
   }
 
   OctaveSetup Octave;
+  GradientSet GradientsOf;
   std::int64_t FirstColumn;
   static constexpr int Slots = 1 << (N - 1);
   std::size_t Stride;
@@ -123,8 +134,9 @@ template <int N>
 class LaneCorners
 {
 public:
-  HWY_INLINE explicit LaneCorners(const OctaveSetup& octave)
+  HWY_INLINE LaneCorners(const OctaveSetup& octave, GradientSet gradients)
     : Octave(octave)
+    , Gradients(gradients)
     , Row(hn::Zero(DU()))
   {
   }
@@ -152,21 +164,35 @@ public:
   }
   HWY_INLINE V GetSlope(int ox, const V (&v)[N]) const
   {
-    return UniformSlope(HashJoinAxes(hn::Xor(this->Hash[0][ox], this->Row)), v);
+    const VU hash = HashJoinAxes(hn::Xor(this->Hash[0][ox], this->Row));
+    if (this->Gradients == GradientSet::Perlin)
+    {
+      V g[N];
+      PerlinGradient<N>(hash, g);
+      return Dot(g, v);
+    }
+    return UniformSlope(hash, v);
   }
 
 private:
   const OctaveSetup& Octave;
+  GradientSet Gradients;
   /// Of the corners below and above.
   VU Hash[N][2];
   VU Row;
 };
 
+/// Window of the corner below a fraction in [0, 1]; that of the one above is 1 less it (Kensler: s(t) = 1 - s(1 - t)).
+HWY_INLINE V CellWindow(Fade fade, V fraction)
+{
+  return fade == Fade::Cubic ? FadeOf(fade, fraction) : PlainQuinticFade(fraction);
+}
+
 /**
  * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix. `near` is
- * the window of the corner below on each axis; that of the one above is 1 less it.
+ * the window of the corner below on each axis; that of the one above is 1 less it. `Weighted`: faded by the metric.
  */
-template <int N, class Corners>
+template <int N, bool Weighted, class Corners>
 WALK_INLINE V SumOverCell(
   const V (&u)[N], V along, V across, const V (&f)[N], const V (&near)[N], Corners& corners)
 {
@@ -206,6 +232,13 @@ WALK_INLINE V SumOverCell(
     V at[N];
     V distance = q;
     std::copy(Gv, Gv + N, at);
+    if constexpr (!Weighted)
+    {
+      const V lower = corners.GetSlope(0, at);
+      step(0, at, distance);
+      const V upper = corners.GetSlope(1, at);
+      return hn::MulAdd(near[0], hn::Sub(lower, upper), upper);
+    }
     const V fade = PlainQuinticFade(distance);
     const V slope = corners.GetSlope(0, at);
     step(0, at, distance);

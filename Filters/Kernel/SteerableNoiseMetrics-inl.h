@@ -279,6 +279,37 @@ HWY_NOINLINE void MetricsOfDirections(
   }
 }
 
+/// Eigenvalues of samples that have a shape of their own, in place of those that MetricsOfDirections gave them.
+template <int N>
+void ReshapeMetrics(const NoiseSetup& setup, const float* shapes, const float* normals,
+  std::size_t at, std::size_t count, MetricBlock& block)
+{
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const std::size_t to = at + i;
+    if (block.Sense[to] == 0.0f)
+    {
+      continue;
+    }
+    const NoiseParameters own = WithShape(setup.Parameters, shapes + 3 * i);
+    bool onSurface = false; // as ProjectOnSurface has it
+    if (normals)
+    {
+      const double length =
+        Eigen::Map<const Eigen::Vector3f>(normals + 3 * i).template cast<double>().norm();
+      onSurface = length > 0.0 && std::isfinite(length);
+    }
+    const EigenvalueRange range =
+      onSurface ? SurfaceEigenvalues(own) : VectorEigenvalues(own, N);
+    const double strength = StrengthOf(own, block.Length[to]);
+    const auto blend = [=](double eigenvalue)
+    { return static_cast<float>(1.0 + strength * (eigenvalue - 1.0)); };
+    block.Along[to] = blend(range.Along);
+    block.Across[to] = blend(range.Across);
+    block.Second[to] = blend(onSurface ? SurfaceNormalEigenvalue : range.Across);
+  }
+}
+
 /**
  * Adds u_axis ∂u/∂axis to the bend, the neighbours turned to the side of the middle one; a neighbour without a
  * direction stands for no change. Rows are unit vectors, in 2D vectors and 1/length.
@@ -371,18 +402,16 @@ void PadTail(MetricBlock& block, std::size_t end)
   }
 }
 
-/// Tensors go one by one through Eigen's solver.
-template <int N>
-void MetricsOfTensors(const NoiseSetup& setup, const float* tuples, std::size_t at,
-  std::size_t count, MetricBlock& block)
+/// Tensors and metrics go one by one through Eigen's solver: `get(i, norm)` gives what becomes of one.
+template <int N, class Get>
+void MetricsOfTensors(
+  const NoiseSetup& setup, std::size_t at, std::size_t count, MetricBlock& block, Get&& get)
 {
   for (std::size_t i = 0; i < count; ++i)
   {
     const std::size_t to = at + i;
-    const Matrix<N> tensor = TensorOf<N>(tuples + 6 * i);
-    double norm = tensor.norm();
-    norm = N == 2 ? WholeLength(norm, AcrossPlane(tuples + 6 * i)) : norm;
-    const AxialMetric<N> metric = MetricFromTensor<N>(setup.Parameters, tensor, norm);
+    double norm = 0.0;
+    const AxialMetric<N> metric = get(i, norm);
     if constexpr (N == 3)
     {
       SetAxes(metric.Direction, metric.SecondAxis, to, block);
@@ -418,13 +447,18 @@ void Directions(const NoiseSetup& setup, const Field& field, std::size_t first, 
     UnitVectors<N, wanted>(field.Vectors->Read(first, count, block.Tuples), count, row);
     return;
   }
-  const float* tuples = field.Tensors->Read(first, count, block.Tuples);
+  const float* tensors =
+    field.Tensors ? field.Tensors->Read(first, count, block.Tuples) : nullptr;
+  const double* metrics =
+    field.Metrics ? field.Metrics->Read(first, count, block.MetricTuples) : nullptr;
   for (std::size_t i = 0; i < count; ++i)
   {
-    const AxialMetric<N> metric =
-      MetricFromTensor<N>(setup.Parameters, TensorOf<N>(tuples + 6 * i));
-    const Vector<N> direction = metric.Degenerate ? Vector<N>::Zero() : metric.Direction;
-    row[2][i] = metric.Degenerate ? 0.0f : 1.0f;
+    const AxialMetric<N> metric = tensors
+      ? MetricFromTensor<N>(setup.Parameters, TensorOf<N>(tensors + 6 * i))
+      : MetricFromMetric<N>(setup.Parameters, TensorOf<N>(metrics + 6 * i), 0.0);
+    const bool any = !metric.Degenerate && (tensors || metric.Clarity > 0.0);
+    const Vector<N> direction = any ? metric.Direction : Vector<N>::Zero();
+    row[2][i] = any ? 1.0f : 0.0f;
     for (int axis = 0; axis < N; ++axis)
     {
       row[axis][i] = static_cast<float>(direction[axis]);
@@ -432,15 +466,71 @@ void Directions(const NoiseSetup& setup, const Field& field, std::size_t first, 
   }
 }
 
+/// The metric I from `at` on, which has any axes.
+inline void MetricsOfNothing(std::size_t at, std::size_t count, MetricBlock& block)
+{
+  const auto fill = [=](float* array, float value)
+  { std::fill_n(array + at, count + Lanes, value); };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    fill(block.U[axis], axis == 0 ? 1.0f : 0.0f);
+    fill(block.M[axis], axis == 1 ? 1.0f : 0.0f);
+  }
+  for (float* array : { block.URest[0], block.URest[1], block.Length, block.Sense })
+  {
+    fill(array, 0.0f);
+  }
+  for (float* array : { block.Along, block.Across, block.Second })
+  {
+    fill(array, 1.0f);
+  }
+}
+
 /// Axes and eigenvalues from `at` on, once the bend is known. True: all have a direction and the same
 /// strength, and none of their eigenvalues are written.
 template <int N>
 bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t at,
-  std::size_t count, MetricBlock& block)
+  std::size_t count, MetricBlock& block, std::uint64_t& bounded)
 {
+  if (field.Isotropic)
+  {
+    MetricsOfNothing(at, count, block);
+    return setup.Uniform;
+  }
+  const float* shapes = field.Shapes ? field.Shapes->Read(first, count, block.Shapes) : nullptr;
   if (field.Tensors)
   {
-    MetricsOfTensors<N>(setup, field.Tensors->Read(first, count, block.Tuples), at, count, block);
+    const float* tuples = field.Tensors->Read(first, count, block.Tuples);
+    MetricsOfTensors<N>(setup, at, count, block,
+      [&](std::size_t i, double& norm)
+      {
+        const Matrix<N> tensor = TensorOf<N>(tuples + 6 * i);
+        norm = tensor.norm();
+        norm = N == 2 ? WholeLength(norm, AcrossPlane(tuples + 6 * i)) : norm;
+        return shapes
+          ? MetricFromTensor<N>(WithShape(setup.Parameters, shapes + 3 * i), tensor, norm)
+          : MetricFromTensor<N>(setup.Parameters, tensor, norm);
+      });
+    PadTail(block, at + count);
+    return false;
+  }
+  if (field.Metrics)
+  {
+    const double* tuples = field.Metrics->Read(first, count, block.MetricTuples);
+    MetricsOfTensors<N>(setup, at, count, block,
+      [&](std::size_t i, double& norm)
+      {
+        const Matrix<N> metric = TensorOf<N>(tuples + 6 * i);
+        norm = metric.norm();
+        norm = N == 2 ? WholeLength(norm, AcrossPlane(tuples + 6 * i)) : norm;
+        bool isBounded = false;
+        const AxialMetric<N> result = shapes
+          ? MetricFromMetric<N>(
+              WithShape(setup.Parameters, shapes + 3 * i), metric, norm, &isBounded)
+          : MetricFromMetric<N>(setup.Parameters, metric, norm, &isBounded);
+        bounded += isBounded;
+        return result;
+      });
     PadTail(block, at + count);
     return false;
   }
@@ -453,12 +543,17 @@ bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
   float* const rest[2] = { block.URest[0] + at, block.URest[1] + at };
   UnitVectors<N, Wanted::Metrics>(
     vectors, count, unit, block.Length + at, setup.SingleCell ? nullptr : rest);
+  const float* normals = nullptr;
   if (field.Normals)
   {
-    const float* normals = field.Normals->Read(first, count, block.Tuples + 3 * BlockRoom);
+    normals = field.Normals->Read(first, count, block.Tuples + 3 * BlockRoom);
     ProjectOnSurface(vectors, normals, at, count, block);
   }
   MetricsOfDirections<N>(setup, block, at, count);
+  if (shapes)
+  {
+    ReshapeMetrics<N>(setup, shapes, normals, at, count, block);
+  }
   PadTail(block, at + count);
   return false;
 }

@@ -98,10 +98,14 @@ struct Octave
     switch (p.Surflet)
     {
       case Basis::Gradient:
-        sums.Noise += amplitude * weight * GradientOf<N>(p.Gradients, hash).dot(Gv);
-        sums.Variance += weight * weight * Gv.squaredNorm() * GradientVariance(p.Gradients, N);
+      {
+        const Vector<N> projected = p.MetricInProjection ? Gv : bent;
+        sums.Noise += amplitude * weight * GradientOf<N>(p.Gradients, hash).dot(projected);
+        sums.Variance +=
+          weight * weight * projected.squaredNorm() * GradientVariance(p.Gradients, N);
         sums.Weight += weight;
         break;
+      }
       case Basis::Value:
         sums.Noise += amplitude * weight * ValueOf(hash);
         sums.Variance += weight * weight / 3.0;

@@ -257,6 +257,8 @@ WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, Me
   const V strength = Const(static_cast<float>(setup.Parameters.Strength));
   const V along = AtStrength(range.Along, strength);
   const V across = AtStrength(range.Across, strength);
+  const bool weighted = setup.Parameters.AnisotropicWeight;
+  const bool metric = weighted || setup.Parameters.MetricInProjection;
   for (std::size_t i = 0; i < count; i += Lanes)
   {
     Places<N> places;
@@ -268,9 +270,12 @@ WALK_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, Me
     {
       u[axis] = Load(block.U[axis] + i);
     }
-    const V k = direct ? along : Load(block.Along + i);
-    const V b = direct ? across : Load(block.Across + i);
-    const V noise = SumOverCell<N>(u, k, b, places.Fraction, near, corners);
+    const V one = Const(1.0f);
+    const V k = !metric ? one : direct ? along : Load(block.Along + i);
+    const V b = !metric ? one : direct ? across : Load(block.Across + i);
+    const V noise = weighted
+      ? SumOverCell<N, true>(u, k, b, places.Fraction, near, corners)
+      : SumOverCell<N, false>(u, k, b, places.Fraction, near, corners);
     if (!direct)
     {
       AddOctave(setup, octave, block, i, noise);
@@ -328,7 +333,7 @@ void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t at, std::si
     directed += there[i];
     noise[i] = from[i];
   }
-  counts.Degenerate += count - static_cast<std::size_t>(directed);
+  counts.Degenerate += setup.Isotropic ? 0 : count - static_cast<std::size_t>(directed);
 }
 
 /// Cells and fractions of samples from `at` on: floor and difference in double, the rest in float. `Plain`: on
@@ -406,7 +411,7 @@ void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double*
   locate(setup, octave, positions, 0, count, block);
   if (setup.SingleCell)
   {
-    LaneCorners<N> corners(octave);
+    LaneCorners<N> corners(octave, setup.Parameters.Gradients);
     AddCells<N>(setup, octave, block, count, direct, corners, visited,
       [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
       {
@@ -414,7 +419,7 @@ void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double*
         {
           places.Cell[axis] = hn::LoadU(DU(), block.Cell[axis] + i);
           places.Fraction[axis] = Load(block.Fraction[axis] + i);
-          near[axis] = PlainQuinticFade(places.Fraction[axis]);
+          near[axis] = CellWindow(setup.Parameters.Interpolant, places.Fraction[axis]);
         }
       });
     return;
@@ -486,12 +491,14 @@ struct ImageOctave
     }
     for (std::size_t i = 0; i + Lanes <= this->Window.size(); i += Lanes)
     {
-      hn::StoreU(PlainQuinticFade(Load(this->Fraction.data() + i)), DF(), this->Window.data() + i);
+      hn::StoreU(CellWindow(setup.Parameters.Interpolant, Load(this->Fraction.data() + i)), DF(),
+        this->Window.data() + i);
     }
     if (serve)
     {
       const auto columns = static_cast<std::size_t>(cells.back() - firstColumn + 2);
-      this->Rows = std::make_unique<GradientRows<N>>(octave, firstColumn, columns);
+      this->Rows = std::make_unique<GradientRows<N>>(
+        octave, setup.Parameters.Gradients, firstColumn, columns);
     }
   }
 };
@@ -649,7 +656,7 @@ void AddRowOfCells(const NoiseSetup& setup, const ImageGrid& grid, const OctaveS
     const double floored = std::floor(place);
     cell[axis] = static_cast<std::int64_t>(floored);
     fraction[axis] = Const(static_cast<float>(place - floored));
-    window[axis] = PlainQuinticFade(fraction[axis]);
+    window[axis] = CellWindow(setup.Parameters.Interpolant, fraction[axis]);
   }
   const auto getPlaces = [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
   {
@@ -672,7 +679,7 @@ void AddRowOfCells(const NoiseSetup& setup, const ImageGrid& grid, const OctaveS
   }
   else
   {
-    LaneCorners<N> corners(octave);
+    LaneCorners<N> corners(octave, setup.Parameters.Gradients);
     AddCells<N>(setup, octave, block, patch.Columns, direct, corners, visited, getPlaces);
   }
 }
@@ -730,7 +737,8 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
       for (std::size_t r = 0; r < patch.Rows; ++r)
       {
         const std::size_t at = Patch::At(r);
-        uniform = Metrics<N>(setup, field, firstOf(r), at, patch.Columns, *block) && uniform;
+        uniform =
+          Metrics<N>(setup, field, firstOf(r), at, patch.Columns, *block, counts.Bounded) && uniform;
         if (setup.Octaves.size() > 1)
         {
           std::fill_n(block->Noise + at, patch.Columns + Lanes, 0.0f);
@@ -779,7 +787,7 @@ EvaluationCounts EvaluatePoints(const NoiseSetup& setup, const TupleReader<doubl
     {
       CopyCurvature<N>(setup, field.Curvature->Read(first, count, block->Tuples), count, *block);
     }
-    const bool uniform = Metrics<N>(setup, field, first, 0, count, *block);
+    const bool uniform = Metrics<N>(setup, field, first, 0, count, *block, counts.Bounded);
     if (setup.Octaves.size() > 1)
     {
       std::fill(block->Noise, block->Noise + count + Lanes, 0.0f);

@@ -62,13 +62,15 @@ struct NoiseSetup
   float Support;
   /// Only what the fast loops know: gradients on the square lattice, still, quintic and separable.
   bool Variant;
-  /// Nothing but the 2^N corners of the cell and no sums: Rice's Quality 0.
+  /// Nothing but the 2^N corners of the cell and no sums: Rice's Quality 0, and Perlin's noise.
   bool SingleCell;
   /// The same with one strength for all vectors, and nothing to do with the sum but to hand it out.
   bool Uniform;
   /// 0: a sample belongs to the corner below it. 1/2: to the nearest one, from which its distance has a
   /// float's full relative precision; normalisation would show less.
   double CellRounding;
+  /// Nothing steers: every metric is I.
+  bool Isotropic;
   /// Second axis in use (tensors and surfaces in 3D).
   bool Biaxial;
   bool Curved;
@@ -111,6 +113,8 @@ struct MetricBlock
   /// Room for tuples that the host converts, and for the directions of a patch and of two more rows: unit
   /// vectors, in 2D vectors and 1/length.
   alignas(64) float Tuples[6 * BlockRoom];
+  alignas(64) float Shapes[3 * BlockRoom];
+  alignas(64) double MetricTuples[6 * BlockRoom];
   alignas(64) double Positions[3 * BlockRoom];
   alignas(64) float DirectionRows[TileRegisters + 2][3][RowRoom];
 };

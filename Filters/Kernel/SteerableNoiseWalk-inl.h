@@ -1693,6 +1693,11 @@ private:
       {
         slope2 = hn::MulAdd(ks, ks, hn::Mul(bt, bt));
       }
+      if (Variant && !this->Params.MetricInProjection)
+      {
+        slope = hn::MulAdd(s, Dot(sample.U, g), hn::Mul(t, Dot(sample.Normal, g)));
+        slope2 = hn::MulAdd(s, s, hn::Mul(t, t));
+      }
     }
     else
     {
@@ -1749,6 +1754,11 @@ private:
         }
       }
       q = hn::MulAdd(ks, s, across2);
+      if (Variant && !this->Params.MetricInProjection)
+      {
+        slope = hn::MulAdd(s, Dot(sample.U, g), Dot(t, g));
+        slope2 = hn::MulAdd(s, s, Dot(t, t));
+      }
     }
 
     V weight;

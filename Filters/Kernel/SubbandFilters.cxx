@@ -68,8 +68,9 @@ void Require(bool condition, const std::string& message)
 
 void SubbandParameters::Validate() const
 {
-  Require(this->Orientations == 4 || this->Orientations == 6 || this->Orientations == 8,
-    "Subband noise: Orientations must be 4, 6 or 8.");
+  Require(this->Orientations == 3 || this->Orientations == 4 || this->Orientations == 6 ||
+      this->Orientations == 8,
+    "Subband noise: Orientations must be 3, 4, 6 or 8.");
   Require(this->Scales >= 1 && this->Scales <= 6, "Subband noise: Scales must be 1 to 6.");
   Require(this->TileSize >= 16 && this->TileSize <= 2048,
     "Subband noise: TileSize must be 16 to 2048 texels.");

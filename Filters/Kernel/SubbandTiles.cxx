@@ -142,7 +142,6 @@ inline void Interpolate(const Neighborhood& points, int first, float* bands)
 
 void InterpolateAll(const Neighborhood& points, int components, float* bands)
 {
-  // Components are a multiple of two.
   int c = 0;
   for (; c + 16 <= components; c += 16)
   {
@@ -152,9 +151,13 @@ void InterpolateAll(const Neighborhood& points, int components, float* bands)
   {
     Interpolate<4>(points, c, bands + c);
   }
-  for (; c < components; c += 2)
+  for (; c + 2 <= components; c += 2)
   {
     Interpolate<2>(points, c, bands + c);
+  }
+  if (c < components)
+  {
+    Interpolate<1>(points, c, bands + c);
   }
 }
 
@@ -248,32 +251,66 @@ SubbandTiles MakeSubbandTiles(const SubbandParameters& parameters)
   return tiles;
 }
 
-QuantizedSubbandTiles Quantize(const SubbandTiles& tiles)
+std::vector<float> MakeResidualTiles(const SubbandParameters& parameters)
 {
-  const std::size_t components = tiles.Parameters.Components();
-  const std::size_t texels = tiles.Values.size() / components;
+  parameters.Validate();
+  std::vector<float> values(
+    2 * static_cast<std::size_t>(parameters.TileSize) * parameters.TileSize);
+  const double k0 = parameters.CenterFrequency();
+  for (const bool low : { false, true })
+  {
+    const std::vector<Complex> residual = SynthesizeNoise(parameters.TileSize, parameters.Seed,
+      parameters.Realization,
+      [&](int kx, int ky)
+      {
+        const double k = std::hypot(kx, ky);
+        if (k == 0.0)
+        {
+          return low ? 1.0 : 0.0;
+        }
+        const double octaves = std::log2(k / k0);
+        return low ? LowResidual(octaves, parameters.Scales) : HighResidual(octaves);
+      });
+    for (std::size_t texel = 0; texel < residual.size(); ++texel)
+    {
+      values[2 * texel + low] = static_cast<float>(residual[texel].real());
+    }
+  }
+  return values;
+}
 
-  QuantizedSubbandTiles quantized;
-  quantized.Parameters = tiles.Parameters;
-  quantized.Values.resize(tiles.Values.size());
-  quantized.Range.resize(components);
+std::vector<std::uint8_t> QuantizeValues(
+  const std::vector<float>& values, std::size_t components, std::vector<float>& range)
+{
+  const std::size_t texels = values.size() / components;
+  std::vector<std::uint8_t> bytes(values.size());
+  range.resize(components);
   for (std::size_t c = 0; c < components; ++c)
   {
     double power = 0.0;
     for (std::size_t texel = 0; texel < texels; ++texel)
     {
-      const double value = tiles.Values[texel * components + c];
+      const double value = values[texel * components + c];
       power += value * value;
     }
-    const double range = 4.0 * std::sqrt(power / static_cast<double>(texels));
-    quantized.Range[c] = static_cast<float>(range);
+    const double most = 4.0 * std::sqrt(power / static_cast<double>(texels));
+    range[c] = static_cast<float>(most);
     for (std::size_t texel = 0; texel < texels; ++texel)
     {
-      const double level = 127.5 * (tiles.Values[texel * components + c] / range + 1.0);
-      quantized.Values[texel * components + c] =
+      const double level = 127.5 * (values[texel * components + c] / most + 1.0);
+      bytes[texel * components + c] =
         static_cast<std::uint8_t>(std::lround(std::clamp(level, 0.0, 255.0)));
     }
   }
+  return bytes;
+}
+
+QuantizedSubbandTiles Quantize(const SubbandTiles& tiles)
+{
+  QuantizedSubbandTiles quantized;
+  quantized.Parameters = tiles.Parameters;
+  quantized.Values = QuantizeValues(
+    tiles.Values, static_cast<std::size_t>(tiles.Parameters.Components()), quantized.Range);
   return quantized;
 }
 

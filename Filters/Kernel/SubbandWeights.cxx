@@ -382,6 +382,8 @@ void SubbandWeights::WeighBands(
   const double* dual = this->AngularDual.data();
   switch (orientations)
   {
+    case 3:
+      return SumDirections<3>(dual, radial, this->DirectionCount, scales, weights);
     case 4:
       return SumDirections<4>(dual, radial, this->DirectionCount, scales, weights);
     case 6:

@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <limits>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 namespace noise
@@ -112,18 +113,23 @@ private:
   bool Rotated;
 };
 
-class TensorReader : public steerable::TupleReader<float>
+/// Floats for tensors of any size, of which the direction counts; doubles for metrics, times a factor.
+template <typename Value>
+class TensorReader : public steerable::TupleReader<Value>
 {
 public:
-  TensorReader(vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
+  TensorReader(
+    vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane, double factor = 1.0)
     : Array(array)
     , InAxes(axes)
     , TwoAxes(inPlane ? WorldPlane : plane)
     , Rotated(axes != WorldAxes && !(inPlane && array->GetNumberOfComponents() == 4))
+    , FillsThird(!inPlane)
+    , Factor(factor)
   {
   }
 
-  const float* Read(std::size_t first, std::size_t count, float* scratch) const override
+  const Value* Read(std::size_t first, std::size_t count, Value* scratch) const override
   {
     const int components = this->Array->GetNumberOfComponents();
     ForEachTuple(this->Array, first, count,
@@ -137,6 +143,11 @@ public:
           full[a][a] = t[0];
           full[a][b] = full[b][a] = 0.5 * (t[1] + t[2]);
           full[b][b] = t[3];
+          if (std::is_same_v<Value, double> && this->FillsThird)
+          {
+            // A metric needs a third axis: as far as the mean of the two.
+            full[3 - a - b][3 - a - b] = 0.5 * (t[0] + t[3]);
+          }
         }
         else if (components == 6)
         {
@@ -176,7 +187,15 @@ public:
         };
         const double symmetric[6] = { get(0, 0), get(1, 1), get(2, 2), get(0, 1), get(1, 2),
           get(0, 2) };
-        ToFloats(symmetric, 6, scratch + 6 * i);
+        if constexpr (std::is_same_v<Value, double>)
+        {
+          std::transform(symmetric, symmetric + 6, scratch + 6 * i,
+            [this](double value) { return this->Factor * value; });
+        }
+        else
+        {
+          ToFloats(symmetric, 6, scratch + 6 * i);
+        }
       });
     return scratch;
   }
@@ -186,21 +205,24 @@ private:
   Axes InAxes;
   Plane TwoAxes;
   bool Rotated;
+  bool FillsThird;
+  double Factor;
 };
 
-class LeavingOutReader : public steerable::TupleReader<float>
+template <typename Value>
+class LeavingOutReader : public steerable::TupleReader<Value>
 {
 public:
-  LeavingOutReader(std::unique_ptr<steerable::TupleReader<float>> reader, int components,
+  LeavingOutReader(std::unique_ptr<steerable::TupleReader<Value>> reader, int components,
     const std::vector<unsigned char>& left)
     : Reader(std::move(reader))
     , Components(components)
     , Left(left)
   {
   }
-  const float* Read(std::size_t first, std::size_t count, float* scratch) const override
+  const Value* Read(std::size_t first, std::size_t count, Value* scratch) const override
   {
-    const float* tuples = this->Reader->Read(first, count, scratch);
+    const Value* tuples = this->Reader->Read(first, count, scratch);
     const auto values = static_cast<std::ptrdiff_t>(count * this->Components);
     if (tuples != scratch)
     {
@@ -211,16 +233,49 @@ public:
       if (this->Left[first + i])
       {
         std::fill_n(scratch + i * this->Components, this->Components,
-          std::numeric_limits<float>::quiet_NaN());
+          std::numeric_limits<Value>::quiet_NaN());
       }
     }
     return scratch;
   }
 
 private:
-  std::unique_ptr<steerable::TupleReader<float>> Reader;
+  std::unique_ptr<steerable::TupleReader<Value>> Reader;
   std::size_t Components;
   const std::vector<unsigned char>& Left;
+};
+
+class ShapeReader : public steerable::TupleReader<float>
+{
+public:
+  explicit ShapeReader(const ShapeArrays& arrays)
+    : Arrays(arrays)
+  {
+  }
+  const float* Read(std::size_t first, std::size_t count, float* scratch) const override
+  {
+    std::fill_n(scratch, 3 * count, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t which = 0; which < this->Arrays.size(); ++which)
+    {
+      vtkDataArray* array = this->Arrays[which];
+      if (!array)
+      {
+        continue;
+      }
+      const bool scalar = array->GetNumberOfComponents() == 1;
+      ForEachTuple(array, first, count,
+        [&](std::size_t i, const double* t)
+        {
+          const double value =
+            scalar ? t[0] : std::sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+          scratch[3 * i + which] = static_cast<float>(value);
+        });
+    }
+    return scratch;
+  }
+
+private:
+  ShapeArrays Arrays;
 };
 
 class PositionReader : public steerable::TupleReader<double>
@@ -276,7 +331,18 @@ std::unique_ptr<steerable::TupleReader<float>> MakeVectorReader(
 std::unique_ptr<steerable::TupleReader<float>> MakeTensorReader(
   vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane)
 {
-  return std::make_unique<TensorReader>(array, axes, inPlane, plane);
+  return std::make_unique<TensorReader<float>>(array, axes, inPlane, plane);
+}
+
+std::unique_ptr<steerable::TupleReader<double>> MakeMetricReader(
+  vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane, double factor)
+{
+  return std::make_unique<TensorReader<double>>(array, axes, inPlane, plane, factor);
+}
+
+std::unique_ptr<steerable::TupleReader<float>> MakeShapeReader(const ShapeArrays& arrays)
+{
+  return std::make_unique<ShapeReader>(arrays);
 }
 
 std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray* array)
@@ -297,7 +363,14 @@ std::unique_ptr<steerable::TupleReader<float>> LeaveOut(
   std::unique_ptr<steerable::TupleReader<float>> reader, int components,
   const std::vector<unsigned char>& left)
 {
-  return std::make_unique<LeavingOutReader>(std::move(reader), components, left);
+  return std::make_unique<LeavingOutReader<float>>(std::move(reader), components, left);
+}
+
+std::unique_ptr<steerable::TupleReader<double>> LeaveOut(
+  std::unique_ptr<steerable::TupleReader<double>> reader, int components,
+  const std::vector<unsigned char>& left)
+{
+  return std::make_unique<LeavingOutReader<double>>(std::move(reader), components, left);
 }
 
 void ReadLengths(vtkDataArray* array, std::size_t first, std::size_t count, double* lengths)

@@ -102,13 +102,20 @@ Samples::Samples(
   : DataSet(dataset)
   , Array(array)
   , Cells(cells)
+  , InPlane(plane)
   , TakenAs(shape)
   , Hidden(dataset)
 {
-  this->SetLeftOut(limit); // before anything looks at neighbours
-  const bool vectors = IsVector(array->GetNumberOfComponents());
+  // Before anything looks at neighbours; where nothing steers nothing is too long.
+  this->SetLeftOut(array ? limit : std::numeric_limits<double>::infinity());
   const auto setSteering = [&](bool flat)
   {
+    if (!array)
+    {
+      this->Field.Isotropic = true;
+      return;
+    }
+    const bool vectors = IsVector(array->GetNumberOfComponents());
     this->Steering = vectors ? MakeVectorReader(array, this->InAxes, flat, plane)
                              : MakeTensorReader(array, this->InAxes, flat, plane);
     if (!this->LeftOut.empty())
@@ -238,7 +245,7 @@ void Samples::SetPoints()
   {
     this->Positions = MakePositionReader(this->DataSet);
   }
-  if (IsVector(this->Array->GetNumberOfComponents()))
+  if (this->Array && IsVector(this->Array->GetNumberOfComponents()))
   {
     WithThreads(
       [&]
@@ -454,6 +461,27 @@ bool Samples::DoCellsMeet(int axis, vtkIdType cell) const
   return true;
 }
 
+void Samples::TakeTensorsAsMetrics(double factor)
+{
+  if (this->Field.Tensors)
+  {
+    this->Metrics = MakeMetricReader(
+      this->Array, this->InAxes, this->Dimension == 2, this->InPlane, factor);
+    if (!this->LeftOut.empty())
+    {
+      this->Metrics = LeaveOut(std::move(this->Metrics), 6, this->LeftOut);
+    }
+    this->Field.Tensors = nullptr;
+    this->Field.Metrics = this->Metrics.get();
+  }
+}
+
+void Samples::SetShapes(const ShapeArrays& arrays)
+{
+  this->Shapes = MakeShapeReader(arrays);
+  this->Field.Shapes = this->Shapes.get();
+}
+
 void Samples::ComputeCurvature(double featureSize)
 {
   const vtkIdType count = this->GetNumberOfSamples();
@@ -493,20 +521,46 @@ steerable::EvaluationCounts Samples::Evaluate(
                       : kernel.EvaluatePoints(*this->Positions, this->Field, begin, end, noise);
 }
 
-void Samples::EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkIdType begin,
-  vtkIdType end, float* metrics) const
+void Samples::EvaluateMetrics(const steerable::NoiseParameters& common, vtkIdType begin,
+  vtkIdType end, double* metrics) const
 {
   using namespace steerable;
   const auto count = static_cast<std::size_t>(end - begin);
   std::vector<float> scratch(6 * count);
   std::vector<float> normalScratch(3 * count);
-  const float* steering = this->Steering->Read(begin, count, scratch.data());
+  std::vector<double> metricScratch(this->Metrics ? 6 * count : 0);
+  const double* own =
+    this->Metrics ? this->Metrics->Read(begin, count, metricScratch.data()) : nullptr;
+  const float* steering =
+    this->Steering ? this->Steering->Read(begin, count, scratch.data()) : nullptr;
   const float* normals =
     this->NormalReader ? this->NormalReader->Read(begin, count, normalScratch.data()) : nullptr;
+  std::vector<float> shapeScratch(this->Shapes ? 3 * count : 0);
+  const float* shapes =
+    this->Shapes ? this->Shapes->Read(begin, count, shapeScratch.data()) : nullptr;
   for (std::size_t i = 0; i < count; ++i)
   {
+    const NoiseParameters parameters = shapes ? WithShape(common, shapes + 3 * i) : common;
     Matrix<3> metric = Matrix<3>::Zero();
-    if (this->Field.Tensors)
+    if (this->Field.Isotropic)
+    {
+      metric.diagonal().head(this->Dimension).setOnes();
+    }
+    else if (own)
+    {
+      const Matrix<3> tensor = TensorOf<3>(own + 6 * i);
+      if (this->Dimension == 2)
+      {
+        const Matrix<2> flat = tensor.topLeftCorner<2, 2>();
+        metric.topLeftCorner<2, 2>() = MetricFromMetric<2>(
+          parameters, flat, WholeLength(flat.norm(), AcrossPlane(own + 6 * i))).ToMatrix();
+      }
+      else
+      {
+        metric = MetricFromMetric<3>(parameters, tensor, tensor.norm()).ToMatrix();
+      }
+    }
+    else if (this->Field.Tensors)
     {
       const Matrix<3> tensor = TensorOf<3>(steering + 6 * i);
       if (this->Dimension == 2)

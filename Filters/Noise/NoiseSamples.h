@@ -29,7 +29,7 @@ class Samples
 {
 public:
   /**
-   * `cells`: the array belongs to the cells. `shape` as CommonShape has it. `magnification`: samples of an image
+   * `array`: what steers; null: nothing does. `cells`: it belongs to the cells. `shape` as CommonShape has it. `magnification`: samples of an image
    * for each one that its vectors were interpolated from. `plane`: where two components lie, but flat
    * images have them along their own axes. Vectors longer than `limit` are left out.
    */
@@ -47,6 +47,12 @@ public:
   vtkFloatArray* GetNormals() const { return this->Normals; }
   /// What ComputeCurvature found; null before, for tensors and for images.
   vtkFloatArray* GetCurvature() const { return this->Curvature; }
+
+  /// Tensors times `factor` are the metric itself; without effect on vectors.
+  void TakeTensorsAsMetrics(double factor);
+
+  /// StreakLength, Strength and EigenvalueSum of each sample from arrays, of which one at least is there.
+  void SetShapes(const ShapeArrays& arrays);
 
   /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.
   void ComputeCurvature(double featureSize);
@@ -66,7 +72,7 @@ public:
 
   /// The metrics (6 components) of the samples [begin, end), in world axes.
   void EvaluateMetrics(const steerable::NoiseParameters& parameters, vtkIdType begin, vtkIdType end,
-    float* metrics) const;
+    double* metrics) const;
 
 private:
   void SetGrid(vtkImageData* image);
@@ -81,6 +87,7 @@ private:
   vtkDataSet* DataSet;
   vtkDataArray* Array;
   bool Cells;
+  Plane InPlane;
   Shape TakenAs;
   HiddenSamples Hidden;
   std::vector<unsigned char> LeftOut;
@@ -89,6 +96,8 @@ private:
   Axes InAxes = WorldAxes;
   steerable::Field Field;
   std::unique_ptr<steerable::TupleReader<float>> Steering;
+  std::unique_ptr<steerable::TupleReader<double>> Metrics;
+  std::unique_ptr<steerable::TupleReader<float>> Shapes;
   std::unique_ptr<steerable::TupleReader<float>> NormalReader;
   std::unique_ptr<steerable::TupleReader<float>> CurvatureReader;
   std::unique_ptr<steerable::TupleReader<double>> Positions;

@@ -12,10 +12,10 @@
 
 namespace noise
 {
-/// 4, 6 or 8: the largest of these that is not above `orientations`.
+/// 3, or of 4, 6 and 8 the largest that is not above `orientations`, at least 4.
 inline int AllowedOrientations(int orientations)
 {
-  return orientations >= 8 ? 8 : orientations >= 6 ? 6 : 4;
+  return orientations == 3 ? 3 : orientations >= 8 ? 8 : orientations >= 6 ? 6 : 4;
 }
 
 /// Names components o<i>s<j>, orientation fastest; `plane` is put in front.

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <vector>
 
@@ -45,6 +46,21 @@ vtkSmartPointer<ArrayT> CopyTexels(
   }
   return array;
 }
+
+/// Texels of `a` and `b` values one after the other.
+std::vector<float> JoinTexels(
+  const std::vector<float>& first, int a, const std::vector<float>& second, int b)
+{
+  std::vector<float> joined;
+  joined.reserve(first.size() + second.size());
+  auto from = second.begin();
+  for (auto texel = first.begin(); texel != first.end(); texel += a, from += b)
+  {
+    joined.insert(joined.end(), texel, texel + a);
+    joined.insert(joined.end(), from, from + b);
+  }
+  return joined;
+}
 } // namespace
 
 //------------------------------------------------------------------------------
@@ -60,6 +76,11 @@ vtkImageSubbandNoiseSource::~vtkImageSubbandNoiseSource() = default;
 void vtkImageSubbandNoiseSource::SetOrientations(int orientations)
 {
   const int allowed = noise::AllowedOrientations(orientations);
+  if (allowed != orientations)
+  {
+    vtkWarningMacro("Orientations can be 3, 4, 6 or 8, not " << orientations << ": " << allowed
+                                                             << " was taken.");
+  }
   if (this->Orientations != allowed)
   {
     this->Orientations = allowed;
@@ -81,7 +102,7 @@ int vtkImageSubbandNoiseSource::RequestInformation(
   outInfo->Set(vtkDataObject::ORIGIN(), origin, 3);
   outInfo->Set(vtkAlgorithm::CAN_PRODUCE_SUB_EXTENT(), 1);
   vtkDataObject::SetPointDataActiveScalarInfo(outInfo,
-    this->OutputType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, this->Orientations * this->Scales);
+    this->OutputType == FLOAT ? VTK_FLOAT : VTK_UNSIGNED_CHAR, this->Orientations * this->Scales + (this->Residuals ? 2 : 0));
   return 1;
 }
 
@@ -109,25 +130,36 @@ int vtkImageSubbandNoiseSource::RequestData(
   parameters.Seed = static_cast<std::uint32_t>(this->Seed);
   try
   {
-    const steerable::SubbandTiles tiles = steerable::MakeSubbandTiles(parameters);
+    std::vector<float> values = steerable::MakeSubbandTiles(parameters).Values;
+    int components = parameters.Components();
+    if (this->Residuals)
+    {
+      values = JoinTexels(values, components, steerable::MakeResidualTiles(parameters), 2);
+      components += 2;
+    }
     vtkSmartPointer<vtkDataArray> array;
     if (this->OutputType == FLOAT)
     {
-      array = CopyTexels<vtkFloatArray>(
-        tiles.Values, extent, parameters.TileSize, parameters.Components());
+      array = CopyTexels<vtkFloatArray>(values, extent, parameters.TileSize, components);
     }
     else
     {
-      const steerable::QuantizedSubbandTiles bytes = steerable::Quantize(tiles);
-      array = CopyTexels<vtkUnsignedCharArray>(
-        bytes.Values, extent, parameters.TileSize, parameters.Components());
+      std::vector<float> found;
+      const std::vector<std::uint8_t> bytes =
+        steerable::QuantizeValues(values, static_cast<std::size_t>(components), found);
+      array = CopyTexels<vtkUnsignedCharArray>(bytes, extent, parameters.TileSize, components);
       auto ranges = vtkSmartPointer<vtkFloatArray>::New();
       ranges->SetName("SubbandRanges");
-      ranges->SetNumberOfTuples(parameters.Components());
-      std::copy(bytes.Range.begin(), bytes.Range.end(), ranges->GetPointer(0));
+      ranges->SetNumberOfTuples(components);
+      std::copy(found.begin(), found.end(), ranges->GetPointer(0));
       output->GetFieldData()->AddArray(ranges);
     }
     noise::NameSubbands(array, parameters.Orientations, parameters.Scales);
+    if (this->Residuals)
+    {
+      array->SetComponentName(components - 2, "high");
+      array->SetComponentName(components - 1, "low");
+    }
     output->GetPointData()->SetScalars(array);
   }
   catch (const std::exception& error)
@@ -147,5 +179,6 @@ void vtkImageSubbandNoiseSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "TileSize: " << this->TileSize << "\n";
   os << indent << "BandCenter: " << this->BandCenter << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "Residuals: " << this->Residuals << "\n";
   os << indent << "OutputType: " << this->OutputType << "\n";
 }

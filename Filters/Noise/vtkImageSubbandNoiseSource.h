@@ -38,7 +38,7 @@ public:
   };
 
   ///@{
-  /// Directions of the bands: 4, 6 or 8, default 8; other values become the next lower of these.
+  /// Directions of the bands: 3, 4, 6 or 8, default 8; others become one of these, with a warning.
   void SetOrientations(int orientations);
   vtkGetMacro(Orientations, int);
   ///@}
@@ -71,6 +71,16 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Two more components, "high" and "low": what is finer and what is coarser than all bands, with the mean. The sum of
+   * all components is then white noise of variance one. Default off.
+   */
+  vtkSetMacro(Residuals, bool);
+  vtkGetMacro(Residuals, bool);
+  vtkBooleanMacro(Residuals, bool);
+  ///@}
+
+  ///@{
   /// FLOAT, the default, or UNSIGNED_CHAR: bytes at +-4 standard deviations.
   vtkSetClampMacro(OutputType, int, FLOAT, UNSIGNED_CHAR);
   vtkGetMacro(OutputType, int);
@@ -88,6 +98,7 @@ protected:
   int TileSize = 256;
   double BandCenter = 0.125;
   int Seed = 0;
+  bool Residuals = false;
   int OutputType = FLOAT;
 
 private:

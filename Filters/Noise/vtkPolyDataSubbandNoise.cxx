@@ -7,6 +7,7 @@
 #include "NoiseGhosts.h"
 #include "NoiseThreads.h"
 #include "SubbandNames.h"
+#include "SubbandAnisotropy.h"
 #include "SubbandSurface.h"
 #include "SubbandTiles.h"
 #include "SubbandWeights.h"
@@ -70,6 +71,8 @@ struct Block
   vtkDataArray* Vectors = nullptr;
   bool CellVectors = false;
   std::unique_ptr<SubbandSurface> Surface;
+  vtkDataArray* Wavelengths = nullptr; // null: the same at all points
+  vtkDataArray* Anisotropies = nullptr;
 };
 
 /// Tiles and how they are laid on surfaces: what all blocks with the same parameterization share.
@@ -79,6 +82,45 @@ struct Layout
   double Repeats = 1.0;    // of the tile for one repeat of the texture, or for a world unit
   double FixedScale = 0.0; // of noise that ignores the mapping
 };
+
+/// Of all points: what the property says, and the least and the greatest where an array does.
+struct Wavelengths
+{
+  double Usual = 1.0;
+  double Shortest = 1.0;
+  double Longest = 1.0;
+};
+
+/// Value of one component, length of more.
+double ValueOf(vtkDataArray* array, vtkIdType i)
+{
+  const int components = array->GetNumberOfComponents();
+  double squares = 0.0;
+  for (int c = 0; c < components; ++c)
+  {
+    const double value = array->GetComponent(i, c);
+    if (components == 1)
+    {
+      return value;
+    }
+    squares += value * value;
+  }
+  return std::sqrt(squares);
+}
+
+/// Value at a point where it is positive and finite, else `usual`; null: always.
+double WavelengthAt(vtkDataArray* array, vtkIdType point, double usual)
+{
+  const double value = array ? ValueOf(array, point) : usual;
+  return value > 0.0 && std::isfinite(value) ? value : usual;
+}
+
+/// The same of an anisotropy, from 1 to 8.
+double AnisotropyAt(vtkDataArray* array, vtkIdType point, double usual)
+{
+  const double value = array ? ValueOf(array, point) : usual;
+  return std::isfinite(value) ? std::clamp(value, 1.0, 8.0) : usual;
+}
 
 /// What happened at points; `operator+=` joins what threads found.
 struct PointCounts
@@ -161,10 +203,12 @@ double Median(const double* histogram)
  * where that is much too fine.
  */
 Layout LayOnTexture(steerable::SubbandParameters pyramid, const SurfaceSums& sums, double diagonal,
-  double wavelength, double anisotropy)
+  const Wavelengths& wavelengths, double anisotropy)
 {
   // Scale of the wanted noise at a singular value of 2^octaves repeats per diagonal.
-  const double center = std::log2(wavelength / diagonal * pyramid.CenterFrequency());
+  const double center = std::log2(wavelengths.Usual / diagonal * pyramid.CenterFrequency());
+  const double shorter = std::log2(wavelengths.Usual / wavelengths.Shortest);
+  const double longer = std::log2(wavelengths.Longest / wavelengths.Usual);
   const double steering = 0.5 * std::log2(anisotropy);
   const auto octavesOutside = [&](double repeats, int scales)
   {
@@ -174,8 +218,8 @@ Layout LayOnTexture(steerable::SubbandParameters pyramid, const SurfaceSums& sum
     for (int bin = 0; bin < SurfaceSums::Bins; ++bin)
     {
       const double scale = SurfaceSums::OctavesOf(bin) + shift;
-      const double below = steering - scale;
-      const double above = scale + steering - (scales - 1);
+      const double below = steering + shorter - scale;
+      const double above = scale + steering + longer - (scales - 1);
       total += sums.Smaller()[bin];
       sum += sums.Smaller()[bin] * (below > ClampedOctaves ? below : 0.0);
       sum += sums.Larger()[bin] * (above > ClampedOctaves ? above : 0.0);
@@ -218,16 +262,19 @@ Layout LayOnTexture(steerable::SubbandParameters pyramid, const SurfaceSums& sum
  * Tiles for planar projections, which shorten features up to 4:1 where they fade out and 2:1 where
  * they show. The longest feature takes the coarsest scale.
  */
-Layout LayOnPlanes(steerable::SubbandParameters pyramid, double wavelength, double anisotropy)
+Layout LayOnPlanes(
+  steerable::SubbandParameters pyramid, const Wavelengths& wavelengths, double anisotropy)
 {
-  const double octaves = std::max(2.0, std::log2(anisotropy) + 1.0);
+  const double octaves = std::max(2.0, std::log2(anisotropy) + 1.0) +
+    std::log2(wavelengths.Longest / wavelengths.Shortest);
   pyramid.Scales = std::min(static_cast<int>(std::ceil(octaves - 1e-9)) + 1, MostScales(pyramid));
   Layout layout;
   layout.Pyramid = pyramid;
   const double coarsest = std::ldexp(pyramid.CenterFrequency(), 1 - pyramid.Scales);
-  layout.Repeats = 1.0 / (coarsest * wavelength * std::sqrt(anisotropy));
-  layout.FixedScale = std::clamp(
-    std::log2(layout.Repeats * wavelength * pyramid.CenterFrequency()), 0.0, pyramid.Scales - 1.0);
+  layout.Repeats = 1.0 / (coarsest * wavelengths.Longest * std::sqrt(anisotropy));
+  layout.FixedScale =
+    std::clamp(std::log2(layout.Repeats * wavelengths.Usual * pyramid.CenterFrequency()), 0.0,
+      pyramid.Scales - 1.0);
   return layout;
 }
 
@@ -334,6 +381,27 @@ struct Evaluator
   float* Noise = nullptr;
   float* WeightArray = nullptr;
   float* Distortion = nullptr;
+  /// Weights of the user's own, one tuple a point of all planes' bands; null: those of the metric.
+  vtkDataArray* OwnWeights = nullptr;
+  /// Wavelength and Anisotropy of each point; null: those of all, the latter what SteeredFeature takes.
+  vtkDataArray* WavelengthArray = nullptr;
+  vtkDataArray* AnisotropyArray = nullptr;
+  const steerable::SubbandAnisotropy* Scale = nullptr; // null: Method None
+
+  double GetWavelength(vtkIdType point) const
+  {
+    return WavelengthAt(this->WavelengthArray, point, this->Wavelength);
+  }
+  double GetSteering(vtkIdType point) const
+  {
+    if (!this->AnisotropyArray)
+    {
+      return this->Anisotropy;
+    }
+    const double wanted = AnisotropyAt(this->AnisotropyArray, point, this->Wanted);
+    return this->Scale ? this->Scale->GetSteering(wanted) : wanted;
+  }
+  double Wanted = 1.0;
 
   // The points of a chunk that one set of tiles contributes to.
   struct Plane
@@ -359,13 +427,21 @@ struct Evaluator
   /// Adds a point with this metric, in squared repeats of the tile; tells whether it was clamped.
   bool AddPoint(Plane& plane, vtkIdType point, const Eigen::Vector2d& texture,
     const Eigen::Matrix2d& metric, const Eigen::Matrix2d& footprint, double blend,
-    PointCounts& counts) const
+    PointCounts& counts, vtkIdType first, int axis) const
   {
     const int components = this->Components();
     double gamma[MaximumBands];
     if (!texture.allFinite() || !this->Weights.Compute(metric, gamma))
     {
       return false;
+    }
+    if (this->OwnWeights)
+    {
+      for (int c = 0; c < components; ++c)
+      {
+        const double own = this->OwnWeights->GetComponent(first + point, axis * components + c);
+        gamma[c] = std::isfinite(own) ? own / blend : 0.0;
+      }
     }
     plane.Points.push_back(point);
     plane.Texture.push_back(texture);
@@ -432,7 +508,7 @@ struct Evaluator
     vtkIdType point, vtkIdType first, Plane& plane, PointCounts& counts) const
   {
     SubbandSurface::PointMetrics metrics;
-    const bool mapped = surface.ComputeTextured(point, vectors, this->Anisotropy, metrics);
+    const bool mapped = surface.ComputeTextured(point, vectors, this->GetSteering(point), metrics);
     if (this->Distortion)
     {
       const double ratio = mapped ? steerable::DistortionRatio(metrics.Isotropic) : 0.0;
@@ -445,17 +521,17 @@ struct Evaluator
     }
     counts.Undirected = vectors.Values && !metrics.Directed;
     const double repeats = this->Lay.Repeats;
-    const double scale = repeats * this->Wavelength;
+    const double scale = repeats * this->GetWavelength(point);
     counts.Clamped = this->AddPoint(plane, point - first, repeats * surface.GetTexture(point),
       metrics.Metric * (scale * scale),
-      metrics.Isotropic * (repeats * repeats * metrics.SquaredSpacing), 1.0, counts);
+      metrics.Isotropic * (repeats * repeats * metrics.SquaredSpacing), 1.0, counts, first, 0);
   }
 
   void AddProjected(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
     vtkIdType point, vtkIdType first, std::vector<Plane>& planes, PointCounts& counts) const
   {
     SubbandSurface::PointFeatures features;
-    const bool mapped = surface.ComputeProjected(point, vectors, this->Anisotropy, features);
+    const bool mapped = surface.ComputeProjected(point, vectors, this->GetSteering(point), features);
     if (this->Distortion)
     {
       this->Distortion[point] =
@@ -469,7 +545,8 @@ struct Evaluator
     counts.Undirected = vectors.Values && !features.Directed;
     const Eigen::Vector3d blend = steerable::TriplanarBlend(features.Normal);
     const Eigen::Vector3d place = surface.GetPoint(point) * this->Lay.Repeats;
-    const Eigen::Matrix3d feature = features.Feature * (this->Wavelength * this->Wavelength);
+    const double wavelength = this->GetWavelength(point);
+    const Eigen::Matrix3d feature = features.Feature * (wavelength * wavelength);
     for (int axis = 0; axis < 3; ++axis)
     {
       if (blend[axis] > 0.0)
@@ -479,7 +556,8 @@ struct Evaluator
         const Eigen::Vector2d texture(place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]);
         const bool clamped = this->AddPoint(planes[axis], point - first, texture,
           steerable::SurfaceMetric(gradients, feature),
-          gradients.transpose() * gradients * features.SquaredSpacing, blend[axis], counts);
+          gradients.transpose() * gradients * features.SquaredSpacing, blend[axis], counts, first,
+          axis);
         counts.Clamped = counts.Clamped || clamped;
       }
     }
@@ -673,6 +751,11 @@ vtkPolyDataSubbandNoise::~vtkPolyDataSubbandNoise()
 void vtkPolyDataSubbandNoise::SetOrientations(int orientations)
 {
   const int allowed = noise::AllowedOrientations(orientations);
+  if (allowed != orientations)
+  {
+    vtkWarningMacro("Orientations can be 3, 4, 6 or 8, not " << orientations << ": " << allowed
+                                                             << " was taken.");
+  }
   if (this->Orientations != allowed)
   {
     this->Orientations = allowed;
@@ -689,6 +772,15 @@ void vtkPolyDataSubbandNoise::SetPhase(double phase)
     this->Phase = phase;
     this->Modified();
   }
+}
+
+//------------------------------------------------------------------------------
+std::string vtkPolyDataSubbandNoise::GetArrayName(int which)
+{
+  vtkInformation* choice = this->GetInputArrayInformation(which);
+  const char* name =
+    choice->Has(vtkDataObject::FIELD_NAME()) ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  return name && std::strcmp(name, "None") != 0 ? name : "";
 }
 
 //------------------------------------------------------------------------------
@@ -797,6 +889,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   bounds.Reduce(this->Controller);
   const double diagonal = bounds.GetDiagonal();
   std::string failure;
+  std::string lateFailure; // after what all ranks do together
   try
   {
     for (Block& block : blocks)
@@ -828,16 +921,84 @@ int vtkPolyDataSubbandNoise::RequestData(
     return refuse(failure);
   }
 
-  const double anisotropy = finder.IsSteered() ? this->Anisotropy : 1.0;
+  // K directions make features rounder than the metric says: it has to say more.
+  double anisotropy = finder.IsSteered() ? this->Anisotropy : 1.0;
+  double wanted = anisotropy;
+  double asked = anisotropy; // at the most, where an array says it
+  const std::string wavelengthName = this->GetArrayName(WAVELENGTH_ARRAY);
+  const std::string anisotropyName =
+    finder.IsSteered() ? this->GetArrayName(ANISOTROPY_ARRAY) : std::string();
+  double lengths[3] = { std::numeric_limits<double>::infinity(), // least, -greatest, -anisotropy
+    std::numeric_limits<double>::infinity(), -1.0 };
+  for (Block& block : blocks)
+  {
+    const auto find = [&](const std::string& name, const char* property) -> vtkDataArray*
+    {
+      vtkDataArray* array =
+        name.empty() ? nullptr : block.Mesh->GetPointData()->GetArray(name.c_str());
+      if (!name.empty() &&
+        (!array || array->GetNumberOfComponents() > 3 ||
+          array->GetNumberOfTuples() < block.Mesh->GetNumberOfPoints()))
+      {
+        lateFailure = "Array '" + name + "' for " + property +
+          " is not on the points with 1 to 3 components. Choose another one, or None.";
+        return nullptr;
+      }
+      return array;
+    };
+    block.Wavelengths = find(wavelengthName, "Wavelength");
+    block.Anisotropies = find(anisotropyName, "Anisotropy");
+    for (vtkIdType i = 0; i < block.Mesh->GetNumberOfPoints(); ++i)
+    {
+      const double length = block.Wavelengths ? WavelengthAt(block.Wavelengths, i, 0.0) : 0.0;
+      if (length > 0.0)
+      {
+        lengths[0] = std::min(lengths[0], length);
+        lengths[1] = std::min(lengths[1], -length);
+      }
+      if (block.Anisotropies)
+      {
+        lengths[2] = std::min(lengths[2], -AnisotropyAt(block.Anisotropies, i, 1.0));
+      }
+    }
+  }
+  Reduce(this->Controller, lengths, 3, vtkCommunicator::MIN_OP);
+  if (!anisotropyName.empty())
+  {
+    wanted = asked = -lengths[2];
+  }
+  std::unique_ptr<steerable::SubbandAnisotropy> anisotropyScale;
+  double mostAnisotropy = std::numeric_limits<double>::infinity();
+  if (finder.IsSteered() && this->Method != NONE &&
+    (this->Anisotropy > 1.0 || !anisotropyName.empty()))
+  {
+    anisotropyScale = std::make_unique<steerable::SubbandAnisotropy>(
+      this->Orientations, static_cast<steerable::WeightMethod>(this->Method));
+    anisotropy = anisotropyScale->GetSteering(this->Anisotropy);
+    mostAnisotropy = anisotropyScale->GetMost();
+    wanted = std::min(wanted, mostAnisotropy);
+  }
+  double mostSteering = anisotropy;
+  if (!anisotropyName.empty())
+  {
+    mostSteering = anisotropyScale ? anisotropyScale->GetSteering(asked) : asked;
+  }
   const double spacing = GetSpacing(sums, diagonal);
   double wavelength = this->Wavelength;
   if (wavelength <= 0.0)
   {
     wavelength = std::max(bounds.GetSizeInPicture(0.02),
-      noise::SnapSize(PointsPerWavelength * spacing * std::sqrt(anisotropy)));
+      noise::SnapSize(PointsPerWavelength * spacing * std::sqrt(wanted)));
     wavelength = wavelength > 0.0 ? wavelength : 1.0;
   }
   this->ResolvedWavelength = wavelength;
+  Wavelengths wavelengths{ wavelength, wavelength, wavelength };
+  if (std::isfinite(lengths[0]))
+  {
+    wavelengths.Shortest = lengths[0];
+    wavelengths.Longest = -lengths[1];
+    wavelengths.Usual = std::clamp(wavelength, wavelengths.Shortest, wavelengths.Longest);
+  }
 
   // Charts smaller than a wavelength leave no noise but seams.
   double charts[3] = { 0.0, 0.0, 0.0 }; // their area, that of all, and their number
@@ -860,15 +1021,20 @@ int vtkPolyDataSubbandNoise::RequestData(
   const bool folds = foldedArea <= LargestFoldedShare * mapped;
 
   PointCounts counts;
+  const std::string ownWeights = this->GetArrayName(WEIGHTS_ARRAY);
   double textureRepeats = 1.0;
   try
   {
+    if (!lateFailure.empty())
+    {
+      throw std::invalid_argument(lateFailure);
+    }
     steerable::SubbandParameters pyramid;
     pyramid.Orientations = this->Orientations;
     pyramid.TileSize = this->TileSize;
     pyramid.Seed = static_cast<std::uint32_t>(this->Seed);
-    const Layout layouts[2] = { LayOnPlanes(pyramid, wavelength, anisotropy),
-      LayOnTexture(pyramid, sums, diagonal > 0.0 ? diagonal : 1.0, wavelength, anisotropy) };
+    const Layout layouts[2] = { LayOnPlanes(pyramid, wavelengths, mostSteering),
+      LayOnTexture(pyramid, sums, diagonal > 0.0 ? diagonal : 1.0, wavelengths, mostSteering) };
     textureRepeats = layouts[1].Repeats;
     std::unique_ptr<steerable::SubbandWeights> solvers[2];
     for (std::size_t b = 0; b < blocks.size() && !this->GetAbortOutput(); ++b)
@@ -893,6 +1059,7 @@ int vtkPolyDataSubbandNoise::RequestData(
         parameters.Pyramid = layout.Pyramid;
         parameters.Method = static_cast<steerable::WeightMethod>(this->Method);
         parameters.FixedScale = layout.FixedScale;
+        parameters.RadialTriple = this->RadialTriple;
         solvers[textured] = std::make_unique<steerable::SubbandWeights>(parameters);
       }
       const auto& tiles = (textured ? this->Cache->TextureTiles : this->Cache->PlaneTiles)
@@ -916,7 +1083,25 @@ int vtkPolyDataSubbandNoise::RequestData(
         this->Persistence, this->Function == TURBULENCE, this->AntiAlias, pyramid.Seed };
       auto result = noise::NewOutputArray(this->ResultArrayName, 1, points);
       evaluator.Noise = result->GetPointer(0);
+      evaluator.WavelengthArray = block.Wavelengths;
+      evaluator.AnisotropyArray = block.Anisotropies;
+      evaluator.Scale = anisotropyScale.get();
+      evaluator.Wanted = this->Anisotropy;
       vtkPointData* pointData = block.Mesh->GetPointData();
+      if (!ownWeights.empty())
+      {
+        const int needed = planes * layout.Pyramid.Components();
+        vtkDataArray* array = pointData->GetArray(ownWeights.c_str());
+        if (!array || array->GetNumberOfComponents() != needed ||
+          array->GetNumberOfTuples() != points)
+        {
+          throw std::invalid_argument("Weights '" + ownWeights + "' are not on the points with " +
+            std::to_string(needed) + " components (" + std::to_string(layout.Pyramid.Orientations) +
+            " orientations, " + std::to_string(layout.Pyramid.Scales) + " scales" +
+            (textured ? "" : ", 3 planes") + "). OutputWeights adds such an array to begin with.");
+        }
+        evaluator.OwnWeights = array;
+      }
       if (this->OutputWeights)
       {
         const int components = layout.Pyramid.Components();
@@ -1013,8 +1198,15 @@ int vtkPolyDataSubbandNoise::RequestData(
   {
     message << "\n" << blocksWithout << " block(s) were passed on without noise. " << finder.Why;
   }
+  if (asked > 1.005 * mostAnisotropy && !blocks.empty())
+  {
+    message << "\nAnisotropy is " << asked << ", but " << this->Orientations
+            << " Orientations make features at most " << std::round(10.0 * mostAnisotropy) / 10.0
+            << " times longer than wide: they are that. Lower Anisotropy"
+            << (this->Orientations < 8 ? ", or raise Orientations." : ".");
+  }
   // Octaves that are too fine fade with AntiAlias.
-  const double thinnest = wavelength / std::sqrt(anisotropy) /
+  const double thinnest = wavelengths.Shortest / std::sqrt(wanted) /
     (this->AntiAlias ? 1.0 : std::ldexp(1.0, this->Octaves - 1));
   if (!blocks.empty() && spacing > 0.0 && thinnest < 0.999 * PointsPerWavelength * spacing)
   {
@@ -1041,6 +1233,7 @@ void vtkPolyDataSubbandNoise::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Parameterization: " << this->Parameterization << "\n";
   os << indent << "Method: " << this->Method << "\n";
   os << indent << "Orientations: " << this->Orientations << "\n";
+  os << indent << "RadialTriple: " << this->RadialTriple << "\n";
   os << indent << "Octaves: " << this->Octaves << "\n";
   os << indent << "Persistence: " << this->Persistence << "\n";
   os << indent << "Function: " << this->Function << "\n";

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSteerableNoiseFilter.h"
 
+#include "MetricTensor.h"
 #include "NoiseArrays.h"
 #include "NoiseBounds.h"
 #include "NoiseGhosts.h"
@@ -17,11 +18,13 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
@@ -32,6 +35,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <sstream>
@@ -49,6 +53,7 @@ struct Block
   vtkDataSet* DataSet = nullptr;
   vtkDataArray* Array = nullptr;
   bool Cells = false;
+  noise::ShapeArrays ShapeArrays = {};
   noise::Shape Shape;
   /// What a magnified image was made from: interpolated lengths lie between those that are there.
   vtkDataSet* Original = nullptr;
@@ -333,8 +338,11 @@ struct vtkSteerableNoiseFilter::Internals
     p.MinimumEigenvalue = f.MinimumEigenvalue;
     p.EigenvalueSum = f.EigenvalueSum;
     p.LatticeWindow = f.LatticeWindow;
+    p.AnisotropicWeight = f.AnisotropicWeight;
+    p.MetricInProjection = f.MetricInProjection;
     p.Strength = f.Strength;
-    p.StrengthBy = static_cast<steerable::StrengthMode>(f.StrengthMode);
+    p.StrengthBy = f.IsSteered() ? static_cast<steerable::StrengthMode>(f.StrengthMode)
+                                 : steerable::StrengthMode::Constant;
     p.ReferenceMagnitude = f.ReferenceMagnitude;
     p.MaskThreshold = f.MaskThreshold;
     p.FollowCurvature = f.FollowCurvature;
@@ -354,23 +362,90 @@ struct vtkSteerableNoiseFilter::Internals
     p.Gradients = static_cast<steerable::GradientSet>(f.GradientSet);
     p.Period = { f.Period[0], f.Period[1], f.Period[2] };
     p.Seed = static_cast<std::uint32_t>(f.Seed);
+    if (f.Model == MODEL_PERLIN)
+    {
+      p.LatticeWindow = true;
+      p.Quality = 0;
+      p.AnisotropicWeight = false;
+      p.MetricInProjection = false;
+      p.Normalize = steerable::Normalization::None;
+    }
     return p;
   }
 
-  /// Finds the array of a block; false with `why` where there is none that can be used.
+  /// Finds the array of a block, if anything steers; false with `why` where there is none that can be used.
   bool FindArray(Block& block, std::string& why) const
   {
-    block.Array = noise::FindSteeringArray(
-      block.DataSet, this->Self->GetInputArrayInformation(0), block.Cells, why);
-    return block.Array != nullptr;
+    vtkInformation* choice = this->Self->GetInputArrayInformation(0);
+    if (!this->Self->IsSteered())
+    {
+      block.Cells = choice->Get(vtkDataObject::FIELD_ASSOCIATION()) == vtkDataObject::CELL &&
+        block.DataSet->GetNumberOfCells() > 0;
+      return true;
+    }
+    block.Array = noise::FindSteeringArray(block.DataSet, choice, block.Cells, why);
+    if (!block.Array)
+    {
+      why += " Noise without a direction needs none: set Direction to None.";
+      return false;
+    }
+    return this->FindShapeArrays(block, why);
   }
 
-  void Process(const Block& block, const steerable::NoiseParameters& parameters,
+  /// Arrays that properties come from; false with `why` where one is named that cannot be used.
+  bool FindShapeArrays(Block& block, std::string& why) const
+  {
+    constexpr const char* names[] = { "StreakLength", "Strength", "EigenvalueSum" };
+    vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
+    for (int which = 0; which < 3; ++which)
+    {
+      vtkInformation* choice = this->Self->GetInputArrayInformation(STREAK_LENGTH_ARRAY + which);
+      const char* name = choice->Has(vtkDataObject::FIELD_NAME())
+        ? choice->Get(vtkDataObject::FIELD_NAME())
+        : nullptr;
+      if (!name || !*name || std::strcmp(name, "None") == 0)
+      {
+        continue;
+      }
+      vtkDataArray* array = attributes->GetArray(name);
+      if (!array || array->GetNumberOfComponents() > 3 ||
+        array->GetNumberOfTuples() != block.Array->GetNumberOfTuples())
+      {
+        const char* place = block.Cells ? "cells" : "points";
+        why = std::string("Array '") + name + "' for " + names[which] +
+          (array ? " has not 1 to 3 components with a value for each of the "
+                 : " is not on the ") +
+          place + ", where the vectors are. Choose another one, or convert it (" +
+          (block.Cells ? "Point Data to Cell Data" : "Cell Data to Point Data") + ").";
+        return false;
+      }
+      block.ShapeArrays[which] = array;
+    }
+    return true;
+  }
+
+  void Process(const Block& block, steerable::NoiseParameters parameters,
     const noise::Plane& plane, double limit, int magnification,
     double progressStart, double progressShare)
   {
     noise::Samples samples(
       block.DataSet, block.Array, block.Cells, block.Shape, magnification, plane, limit);
+    const noise::ShapeArrays& shapes = block.ShapeArrays;
+    if (shapes[0] || shapes[1] || shapes[2])
+    {
+      samples.SetShapes(shapes);
+    }
+    const double threshold = parameters.MaskThreshold;
+    if (this->Self->TensorUse != TENSOR_DIRECTION && block.Array &&
+      noise::IsTensor(block.Array->GetNumberOfComponents()))
+    {
+      const double factor = this->Self->TensorUse == TENSOR_WORLD_METRIC
+        ? parameters.FeatureSize * parameters.FeatureSize
+        : 1.0;
+      samples.TakeTensorsAsMetrics(factor);
+      parameters.MaskThreshold *= factor;
+      parameters.ReferenceMagnitude *= factor;
+    }
     const steerable::SteerableNoise kernel(parameters, samples.GetDimension());
     if (parameters.FollowCurvature)
     {
@@ -409,14 +484,17 @@ struct vtkSteerableNoiseFilter::Internals
     }
     if (anyDegenerate || counts.Stagnant > 0 || tooLong > 0)
     {
-      this->Blank(block, leftOut, parameters.MaskThreshold, values);
+      this->Blank(block, leftOut, threshold, values);
     }
 
     vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
     if (this->Self->OutputMetric)
     {
-      auto metrics = noise::NewOutputArray("Metric", 6, samples.GetNumberOfSamples());
-      float* tuples = metrics->GetPointer(0);
+      vtkNew<vtkDoubleArray> metrics;
+      metrics->SetName("Metric");
+      metrics->SetNumberOfComponents(6);
+      metrics->SetNumberOfTuples(samples.GetNumberOfSamples());
+      double* tuples = metrics->GetPointer(0);
       const vtkIdType count = samples.GetNumberOfSamples();
       vtkSMPTools::For(0, count, 1024,
         [&](vtkIdType begin, vtkIdType end)
@@ -489,6 +567,15 @@ struct vtkSteerableNoiseFilter::Internals
               << lengths.FarValue << ", " << farAbove.Longest << " long, the next " << farAbove.Rest
               << ". If they stand for missing values, set MaskUpperThreshold "
               << 2.0 * farAbove.Rest << ".";
+    }
+    if (this->Counts.Bounded > 0)
+    {
+      const steerable::EigenvalueRange bounds = steerable::MetricBounds(parameters);
+      message << "\n"
+              << this->Counts.Bounded << " metrics had eigenvalues that are not from " << bounds.Along << " to "
+              << bounds.Across
+              << " in 1 / FeatureSize^2 and were bounded. Check TensorUse and FeatureSize: a streak reaches "
+                 "1 / sqrt(eigenvalue) cells.";
     }
     // Every wall and body has a few; most of the data are a mistake.
     if (2 * this->Counts.Degenerate > static_cast<std::uint64_t>(this->Samples))
@@ -638,7 +725,7 @@ int vtkSteerableNoiseFilter::RequestUpdateExtent(
   }
   const bool magnify = this->ResolvedMagnification > 1 && vtkImageData::GetData(inInfo);
   // Curvature looks at the next samples, and so does interpolation.
-  const int border = (this->FollowCurvature ? 1 : 0) + (magnify ? 1 : 0);
+  const int border = (this->FollowCurvature && this->IsSteered() ? 1 : 0) + (magnify ? 1 : 0);
   inInfo->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(),
     outInfo->Get(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS()) + border);
   if (inInfo->Has(SDDP::WHOLE_EXTENT()) && outInfo->Has(SDDP::UPDATE_EXTENT()))
@@ -830,8 +917,9 @@ int vtkSteerableNoiseFilter::RequestData(
     extremes.Add(block, this->FeatureSize <= 0.0);
   }
   extremes.Reduce(this->Controller);
-  const bool needsMagnitude = this->StrengthMode == MAGNITUDE && this->ReferenceMagnitude <= 0.0;
-  const Lengths lengths(blocks, needsMagnitude, this->MaskUpperThreshold, this->Controller);
+  const bool needsMagnitude = this->IsSteered() && this->StrengthMode == MAGNITUDE &&
+    this->ReferenceMagnitude <= 0.0;
+  const Lengths lengths(this->IsSteered() ? blocks : std::vector<Block>(), needsMagnitude, this->MaskUpperThreshold, this->Controller);
   if (failed)
   {
     return refuse(internals.Why);
@@ -883,6 +971,9 @@ int vtkSteerableNoiseFilter::RequestData(
 void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "Model: " << this->Model << "\n";
+  os << indent << "Direction: " << this->Direction << "\n";
+  os << indent << "TensorUse: " << this->TensorUse << "\n";
   os << indent << "FeatureSize: " << this->FeatureSize << "\n";
   os << indent << "ResolvedFeatureSize: " << this->ResolvedFeatureSize << "\n";
   os << indent << "StreakLength: " << this->StreakLength << "\n";
@@ -890,6 +981,8 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "MinimumEigenvalue: " << this->MinimumEigenvalue << "\n";
   os << indent << "EigenvalueSum: " << this->EigenvalueSum << "\n";
   os << indent << "LatticeWindow: " << this->LatticeWindow << "\n";
+  os << indent << "AnisotropicWeight: " << this->AnisotropicWeight << "\n";
+  os << indent << "MetricInProjection: " << this->MetricInProjection << "\n";
   os << indent << "Strength: " << this->Strength << "\n";
   os << indent << "StrengthMode: " << this->StrengthMode << "\n";
   os << indent << "ReferenceMagnitude: " << this->ReferenceMagnitude << "\n";

@@ -42,6 +42,22 @@ public:
   vtkTypeMacro(vtkSteerableNoiseFilter, vtkPassInputTypeAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
+  enum ModelType
+  {
+    MODEL_STEERABLE = 0,
+    MODEL_PERLIN = 1
+  };
+  enum DirectionType
+  {
+    DIRECTION_FIELD = 0,
+    DIRECTION_NONE = 1
+  };
+  enum TensorUseType
+  {
+    TENSOR_DIRECTION = 0,
+    TENSOR_METRIC = 1,
+    TENSOR_WORLD_METRIC = 2
+  };
   enum StrengthModeType
   {
     CONSTANT = 0,
@@ -87,6 +103,54 @@ public:
     BLANK_NAN = 1,
     BLANK_HIDDEN = 2
   };
+
+  ///@{
+  /**
+   * MODEL_STEERABLE, the default, or MODEL_PERLIN: Perlin's own noise as Kensler writes it, with his variants by
+   * Fade, Falloff, Lattice, GradientSet, Basis and Period. It stands for Direction NONE, LatticeWindow on, Quality
+   * 0, AnisotropicWeight and MetricInProjection off and Normalization NONE, whatever these are set to.
+   */
+  vtkSetClampMacro(Model, int, MODEL_STEERABLE, MODEL_PERLIN);
+  vtkGetMacro(Model, int);
+  ///@}
+
+  /**
+   * Arrays that StreakLength, Strength and EigenvalueSum come from, sample by sample: input arrays 1, 2 and 3 of
+   * SetInputArrayToProcess, the first for the vectors. They lie where the vectors do; of vectors the length counts.
+   * Values are kept within the property's range, and where they are not finite the property counts. Without a name,
+   * or with "None", it counts everywhere, which is the default.
+   */
+  enum InputArrayType
+  {
+    STEERING_ARRAY = 0,
+    STREAK_LENGTH_ARRAY = 1,
+    STRENGTH_ARRAY = 2,
+    EIGENVALUE_SUM_ARRAY = 3
+  };
+
+  ///@{
+  /**
+   * DIRECTION_FIELD, the default: vectors or tensors steer the noise, and data without them are an error.
+   * DIRECTION_NONE: nothing does, no array is needed, and noise is isotropic on any dataset: at its points, or
+   * at its cells if SetInputArrayToProcess asks for them. What goes by vectors (Strength, the masks,
+   * FollowCurvature, Speed) does not count then, and Basis STREAKS is an error.
+   */
+  vtkSetClampMacro(Direction, int, DIRECTION_FIELD, DIRECTION_NONE);
+  vtkGetMacro(Direction, int);
+  ///@}
+
+  ///@{
+  /**
+   * What tensors are. TENSOR_DIRECTION, the default: the eigenvector of their largest eigenvalue is the direction of
+   * streaks, whose shape the properties below give. TENSOR_METRIC: the metric itself, which measures distances, in
+   * 1 / FeatureSize² as OutputMetric has it: a streak reaches 1 / √eigenvalue cells along each eigenvector.
+   * TENSOR_WORLD_METRIC: the same in 1 / world units². StreakLength, EigenvalueSum, Quality and MinimumEigenvalue do
+   * not count then; eigenvalues are bounded to 1/400 (with LatticeWindow 1/1000) and 16 / FeatureSize², with a
+   * warning that counts them. A metric has no sense: streaks' heads and motion may point to either side.
+   */
+  vtkSetClampMacro(TensorUse, int, TENSOR_DIRECTION, TENSOR_WORLD_METRIC);
+  vtkGetMacro(TensorUse, int);
+  ///@}
 
   ///@{
   /**
@@ -147,6 +211,23 @@ public:
   vtkSetMacro(LatticeWindow, bool);
   vtkGetMacro(LatticeWindow, bool);
   vtkBooleanMacro(LatticeWindow, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Surflets fade with the distance that the metric measures, default on. Off needs LatticeWindow, which bounds them
+   * then: Fig. 2 b of the paper, and with MetricInProjection off too, Fig. 2 a.
+   */
+  vtkSetMacro(AnisotropicWeight, bool);
+  vtkGetMacro(AnisotropicWeight, bool);
+  vtkBooleanMacro(AnisotropicWeight, bool);
+  ///@}
+
+  ///@{
+  /// Gradients are projected with the metric, as in the paper, default on.
+  vtkSetMacro(MetricInProjection, bool);
+  vtkGetMacro(MetricInProjection, bool);
+  vtkBooleanMacro(MetricInProjection, bool);
   ///@}
 
   ///@{
@@ -354,8 +435,9 @@ public:
 
   ///@{
   /**
-   * Adds the metric of every sample, before curvature, as the 6-component float array "Metric": XX YY
-   * ZZ XY YZ XZ in units of 1 / FeatureSize². Flat images have 0 across their plane. Default off.
+   * Adds the metric of every sample, before curvature, as the 6-component double array "Metric": XX YY
+   * ZZ XY YZ XZ in units of 1 / FeatureSize². Flat images have 0 across their plane. With TensorUse TENSOR_METRIC
+   * it gives the same noise again, where there is a direction. Default off.
    */
   vtkSetMacro(OutputMetric, bool);
   vtkGetMacro(OutputMetric, bool);
@@ -380,6 +462,9 @@ protected:
   int RequestData(
     vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*) override;
 
+  int Model = MODEL_STEERABLE;
+  int Direction = DIRECTION_FIELD;
+  int TensorUse = TENSOR_DIRECTION;
   double FeatureSize = 0.0;
   double ResolvedFeatureSize = 0.0;
   vtkIdType NumberOfDegenerateSamples = 0;
@@ -390,6 +475,8 @@ protected:
   double MinimumEigenvalue = 0.5;
   double EigenvalueSum = 3.2;
   bool LatticeWindow = false;
+  bool AnisotropicWeight = true;
+  bool MetricInProjection = true;
   double Strength = 1.0;
   int StrengthMode = CONSTANT;
   double ReferenceMagnitude = 0.0;
@@ -424,6 +511,12 @@ protected:
 private:
   vtkSteerableNoiseFilter(const vtkSteerableNoiseFilter&) = delete;
   void operator=(const vtkSteerableNoiseFilter&) = delete;
+
+  /// Whether vectors or tensors are looked for.
+  bool IsSteered() const
+  {
+    return this->Direction == DIRECTION_FIELD && this->Model == MODEL_STEERABLE;
+  }
 
   struct Internals;
 };

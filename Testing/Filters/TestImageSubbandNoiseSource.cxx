@@ -148,9 +148,64 @@ TEST(ImageSubbandNoiseSource, PiecesAreTheWhole)
   }
 }
 
+TEST(ImageSubbandNoiseSource, ResidualsCompleteTheBandsToWhiteNoise)
+{
+  for (const int type : { vtkImageSubbandNoiseSource::FLOAT, vtkImageSubbandNoiseSource::UNSIGNED_CHAR })
+  {
+    vtkNew<vtkImageSubbandNoiseSource> source;
+    source->SetTileSize(64);
+    source->SetScales(2);
+    source->SetOrientations(3);
+    source->SetOutputType(type);
+    source->ResidualsOn();
+    source->Update();
+    vtkImageData* image = source->GetOutput();
+    vtkDataArray* array = image->GetPointData()->GetScalars();
+    ASSERT_EQ(array->GetNumberOfComponents(), 8);
+    EXPECT_STREQ(array->GetComponentName(5), "o2s1");
+    EXPECT_STREQ(array->GetComponentName(6), "high");
+    EXPECT_STREQ(array->GetComponentName(7), "low");
+    vtkDataArray* ranges = image->GetFieldData()->GetArray("SubbandRanges");
+    // White noise: variance one, and no correlation from texel to texel.
+    std::vector<double> sums;
+    for (vtkIdType i = 0; i < 64 * 64; ++i)
+    {
+      double sum = 0.0;
+      for (int c = 0; c < 8; ++c)
+      {
+        const double value = array->GetComponent(i, c);
+        sum += ranges ? (value / 127.5 - 1.0) * ranges->GetComponent(c, 0) : value;
+      }
+      sums.push_back(sum);
+    }
+    double variance = 0.0;
+    double neighbours = 0.0;
+    for (std::size_t i = 0; i < sums.size(); ++i)
+    {
+      variance += sums[i] * sums[i] / 4096.0;
+      neighbours += sums[i] * sums[i % 64 == 63 ? i - 63 : i + 1] / 4096.0;
+    }
+    EXPECT_NEAR(variance, 1.0, ranges ? 0.01 : 1e-5);
+    EXPECT_NEAR(neighbours, 0.0, ranges ? 0.01 : 1e-5);
+  }
+}
+
+TEST(ImageSubbandNoiseSource, OrientationsThatAreNotOfferedAreTold)
+{
+  vtkNew<vtkImageSubbandNoiseSource> source;
+  auto messages = Listen(source);
+  source->SetOrientations(3);
+  EXPECT_EQ(source->GetOrientations(), 3);
+  EXPECT_EQ(messages->Warnings, 0);
+  source->SetOrientations(5);
+  EXPECT_EQ(messages->Warnings, 1);
+  EXPECT_NE(messages->Text.find("3, 4, 6 or 8, not 5: 4"), std::string::npos) << messages->Text;
+}
+
 TEST(ImageSubbandNoiseSource, SettersClamp)
 {
   vtkNew<vtkImageSubbandNoiseSource> source;
+  auto messages = Listen(source); // Orientations that are not offered are told of
   for (const auto& [given, kept] : { std::pair{ -3, 4 }, { 5, 4 }, { 7, 6 }, { 100, 8 } })
   {
     source->SetOrientations(given);

@@ -514,11 +514,11 @@ TEST(PolyDataSubbandNoise, CopiesOfAPointHaveOneValue)
 
 TEST(PolyDataSubbandNoise, TwoComponentsLieInThePlaneOfTheData)
 {
-  const auto upright = Sheet(65, [](double u, double v) { return Eigen::Vector3d(u, 0.0, v); });
+  const auto upright = Sheet(129, [](double u, double v) { return Eigen::Vector3d(u, 0.0, v); });
   const auto noise = [&](int components, const Eigen::Vector3d& vector)
   {
     AddVectors(upright, false, components, [&](vtkIdType) { return vector; });
-    return Noise(upright, 0.25, [](vtkPolyDataSubbandNoise* filter) { Steer(filter, false); });
+    return Noise(upright, 0.2, [](vtkPolyDataSubbandNoise* filter) { Steer(filter, false); });
   };
   EXPECT_EQ(noise(2, { 0.6, 0.8, 0.0 }), noise(3, { 0.6, 0.0, 0.8 }));
 }
@@ -644,6 +644,276 @@ TEST(PolyDataSubbandNoise, VectorsSteer)
       }
     }
   }
+}
+
+TEST(PolyDataSubbandNoise, AnisotropyIsLengthOverWidth)
+{
+  const int n = 257;
+  struct Case
+  {
+    int Orientations;
+    double Wanted;
+    double Most; // infinite: no warning
+  };
+  const double none = std::numeric_limits<double>::infinity();
+  for (const Case& test : { Case{ 8, 4.0, none }, Case{ 6, 3.0, none }, Case{ 4, 4.0, 2.9 } })
+  {
+    double logarithms = 0.0;
+    constexpr int directions = 3;
+    for (int d = 0; d < directions; ++d)
+    {
+      const double angle = 0.1 + 0.9 * d;
+      const Eigen::Vector3d direction(std::cos(angle), std::sin(angle), 0.0);
+      Eigen::Matrix2d tensor = Eigen::Matrix2d::Zero();
+      for (int seed = 0; seed < 2; ++seed)
+      {
+        auto mesh = Sheet(n, Flat, CellKind::Quads, 1.0, true);
+        AddVectors(mesh, false, 3, [&](vtkIdType) { return direction; });
+        vtkNew<vtkPolyDataSubbandNoise> filter;
+        auto messages = Listen(filter);
+        filter->SetInputData(mesh);
+        filter->SetWavelength(0.1);
+        Steer(filter, false);
+        filter->SetAnisotropy(test.Wanted);
+        filter->SetOrientations(test.Orientations);
+        filter->SetSeed(seed);
+        filter->SetAntiAlias(false);
+        filter->Update();
+        EXPECT_EQ(messages->Warnings, std::isinf(test.Most) ? 0 : 1) << messages->Text;
+        if (!std::isinf(test.Most))
+        {
+          std::ostringstream named;
+          named << "at most " << test.Most << " times";
+          EXPECT_NE(messages->Text.find(named.str()), std::string::npos) << messages->Text;
+        }
+        tensor += StructureTensor(Values(filter->GetOutputDataObject(0), "SubbandNoise"), n);
+      }
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(tensor);
+      logarithms +=
+        0.5 * std::log(solver.eigenvalues()[1] / solver.eigenvalues()[0]) / directions;
+    }
+    const double measured = std::exp(logarithms);
+    const double wanted = std::min(test.Wanted, test.Most);
+    std::printf("K = %d, wanted %.1f: length over width %.2f\n", test.Orientations, test.Wanted, measured);
+    EXPECT_NEAR(measured / wanted, 1.0, 0.1) << test.Orientations << ", " << test.Wanted;
+  }
+}
+
+/// A point array of one or more components, of which the last holds the value.
+void AddValues(vtkPolyData* mesh, const char* name, int components,
+  const std::function<double(vtkIdType)>& value)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  array->Fill(0.0);
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+  {
+    array->SetComponent(i, components - 1, value(i));
+  }
+  mesh->GetPointData()->AddArray(array);
+}
+
+TEST(PolyDataSubbandNoise, WavelengthAndAnisotropyComeFromArrays)
+{
+  using Filter = vtkPolyDataSubbandNoise;
+  const auto choose = [](Filter* filter, int which, const char* name) {
+    filter->SetInputArrayToProcess(
+      which, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
+  };
+  const int n = 129;
+  for (const bool texture : { true, false })
+  {
+    // The same value everywhere is the property; what is not one is the property's.
+    auto mesh = Sheet(n, Flat, CellKind::Triangles, 1.0, texture);
+    AddVectors(mesh, false, 3, [](vtkIdType) { return Eigen::Vector3d(0.6, 0.8, 0.0); });
+    AddValues(mesh, "wavelength", 1, [](vtkIdType i) { return i % 7 ? 0.2 : -1.0; });
+    AddValues(mesh, "length", 3, [](vtkIdType i) { return i % 5 ? -2.5 : NaN; });
+    const std::vector<float> expected = Noise(mesh, 0.2,
+      [&](Filter* filter)
+      {
+        Steer(filter, false);
+        filter->SetAnisotropy(2.5);
+      });
+    EXPECT_EQ(Noise(mesh, 0.2,
+                [&](Filter* filter)
+                {
+                  Steer(filter, false);
+                  filter->SetAnisotropy(2.5);
+                  choose(filter, Filter::WAVELENGTH_ARRAY, "wavelength");
+                  choose(filter, Filter::ANISOTROPY_ARRAY, "length");
+                }),
+      expected);
+
+    // Twice the wavelength on one side: half as steep. Longer features on one side: more coherent.
+    double steep[2] = { 0.0, 0.0 };
+    double power[2] = { 0.0, 0.0 };
+    Eigen::Matrix2d tensor[2] = { Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero() };
+    for (int seed = 0; seed < 4; ++seed)
+    {
+      for (const bool lengths : { false, true })
+      {
+        AddValues(mesh, "wavelength", 1, [&](vtkIdType i) { return i % n < n / 2 ? 0.1 : 0.2; });
+        AddValues(mesh, "length", 1, [&](vtkIdType i) { return i % n < n / 2 ? 1.0 : 4.0; });
+        const std::vector<float> noise = Noise(mesh, lengths ? 0.2 : 0.1,
+          [&](Filter* filter)
+          {
+            filter->SetAntiAlias(false);
+            filter->SetSeed(seed);
+            if (lengths)
+            {
+              Steer(filter, false);
+              choose(filter, Filter::ANISOTROPY_ARRAY, "length");
+            }
+            else
+            {
+              choose(filter, Filter::WAVELENGTH_ARRAY, "wavelength");
+            }
+          });
+        for (int y = 1; y + 1 < n; ++y)
+        {
+          for (int x = 1; x + 1 < n; ++x)
+          {
+            const int side = x < n / 2;
+            if (std::abs(x - n / 2) < 2)
+            {
+              continue; // the step between the sides
+            }
+            const Eigen::Vector2d g(0.5 * (noise[y * n + x + 1] - noise[y * n + x - 1]),
+              0.5 * (noise[(y + 1) * n + x] - noise[(y - 1) * n + x]));
+            if (lengths)
+            {
+              tensor[side] += g * g.transpose();
+            }
+            else
+            {
+              steep[side] += g.squaredNorm();
+              power[side] += noise[y * n + x] * noise[y * n + x];
+            }
+          }
+        }
+      }
+    }
+    EXPECT_NEAR(std::sqrt(steep[1] / power[1] / (steep[0] / power[0])), 2.0, 0.3) << texture;
+    const auto ratio = [](const Eigen::Matrix2d& t)
+    {
+      const Eigen::Vector2d values =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(t).eigenvalues();
+      return std::sqrt(values[1] / values[0]);
+    };
+    EXPECT_NEAR(ratio(tensor[1]), 1.0, 0.25) << texture;
+    EXPECT_NEAR(ratio(tensor[0]), 4.0, 0.8) << texture;
+  }
+
+  // More than the orientations can do, and arrays that are not there, are told of.
+  auto mesh = FlatSheet(129);
+  AddVectors(mesh, false, 3, [](vtkIdType) { return Eigen::Vector3d(0.6, 0.8, 0.0); });
+  AddValues(mesh, "length", 1, [](vtkIdType i) { return i == 5 ? 7.0 : 1.0; });
+  vtkNew<Filter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(mesh);
+  filter->SetWavelength(0.2);
+  Steer(filter, false);
+  choose(filter, Filter::ANISOTROPY_ARRAY, "length");
+  filter->Update();
+  EXPECT_NE(messages->Text.find("Anisotropy is 7"), std::string::npos) << messages->Text;
+  choose(filter, Filter::WAVELENGTH_ARRAY, "nothing");
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("'nothing' for Wavelength"), std::string::npos) << messages->Text;
+}
+
+TEST(PolyDataSubbandNoise, TakesWeightsOfTheUsersOwn)
+{
+  for (const bool texture : { true, false })
+  {
+    auto mesh = Sheet(129, Flat, CellKind::Triangles, 1.0, texture);
+    const auto configure = [](vtkPolyDataSubbandNoise* filter)
+    {
+      filter->SetAntiAlias(false);
+      filter->OutputWeightsOn();
+      filter->SetOctaves(2);
+    };
+    auto first = AddNoise(mesh, 0.2, configure);
+    const std::vector<float> expected = Values(first, "SubbandNoise");
+    const auto withOwn = [&](vtkPolyDataSubbandNoise* filter)
+    {
+      filter->SetAntiAlias(false);
+      filter->SetOctaves(2);
+      filter->SetInputArrayToProcess(
+        1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "SubbandWeights");
+    };
+    // The filter's own give its noise again; half of them half the noise.
+    const std::vector<float> again = Noise(first, 0.2, withOwn);
+    EXPECT_LE(LargestDifference(again, expected), 1e-5);
+    vtkDataArray* weights = first->GetPointData()->GetArray("SubbandWeights");
+    for (vtkIdType i = 0; i < weights->GetNumberOfTuples(); ++i)
+    {
+      for (int c = 0; c < weights->GetNumberOfComponents(); ++c)
+      {
+        weights->SetComponent(i, c, 0.5 * weights->GetComponent(i, c));
+      }
+    }
+    std::vector<float> half = Noise(first, 0.2, withOwn);
+    for (float& value : half)
+    {
+      value *= 2.0f;
+    }
+    EXPECT_LE(LargestDifference(half, expected), 1e-5);
+    EXPECT_GT(Deviation(expected), 0.5);
+  }
+
+  // Others are refused with the number that is needed.
+  auto mesh = FlatSheet();
+  vtkNew<vtkFloatArray> wrong;
+  wrong->SetName("weights");
+  wrong->SetNumberOfComponents(5);
+  wrong->SetNumberOfTuples(mesh->GetNumberOfPoints());
+  wrong->Fill(1.0);
+  mesh->GetPointData()->AddArray(wrong);
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(mesh);
+  filter->SetWavelength(0.2);
+  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "weights");
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("8 orientations"), std::string::npos) << messages->Text;
+}
+
+TEST(PolyDataSubbandNoise, RadialTripleCountsForTheHeuristic)
+{
+  auto mesh = FlatSheet();
+  const auto noise = [&](int method, bool triple)
+  {
+    return Noise(mesh, 0.2,
+      [=](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetMethod(method);
+        filter->SetRadialTriple(triple);
+      });
+  };
+  using Filter = vtkPolyDataSubbandNoise;
+  EXPECT_NE(noise(Filter::HEURISTIC, true), noise(Filter::HEURISTIC, false));
+  EXPECT_EQ(noise(Filter::LEAST_SQUARES, true), noise(Filter::LEAST_SQUARES, false));
+  EXPECT_TRUE(AllFinite(noise(Filter::HEURISTIC, true)));
+}
+
+TEST(PolyDataSubbandNoise, ThreeOrientationsAreOffered)
+{
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(FlatSheet(129));
+  filter->SetWavelength(0.15);
+  filter->SetOrientations(3);
+  filter->SetAntiAlias(false);
+  filter->Update();
+  EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
+  EXPECT_NEAR(Deviation(Values(filter->GetOutputDataObject(0), "SubbandNoise")), 1.0, 0.15);
+  filter->SetOrientations(7);
+  EXPECT_EQ(filter->GetOrientations(), 6);
+  EXPECT_EQ(messages->Warnings, 1);
 }
 
 TEST(PolyDataSubbandNoise, AnisotropyOneIsUnsteered)
@@ -1169,6 +1439,7 @@ TEST(PolyDataSubbandNoise, SettersClamp)
   vtkNew<vtkPolyDataSubbandNoise> filter;
   filter->SetAnisotropy(100.0);
   EXPECT_EQ(filter->GetAnisotropy(), 8.0);
+  auto messages = Listen(filter); // 5 is not offered, and told of
   filter->SetOrientations(5);
   EXPECT_EQ(filter->GetOrientations(), 4);
   filter->SetOctaves(0);

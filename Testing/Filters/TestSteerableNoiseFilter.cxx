@@ -3,6 +3,9 @@
 /// vtkSteerableNoiseFilter on images: arrays, planes, pieces, threads, time, options.
 #include "FilterTestHelpers.h"
 
+#include "LatticeHash.h"
+#include "Surflet.h"
+
 #include "vtkAlgorithmOutput.h"
 #include "vtkArrayCalculator.h"
 #include "vtkCallbackCommand.h"
@@ -11,9 +14,12 @@
 #include "vtkIntArray.h"
 #include "vtkMatrix3x3.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkRTAnalyticSource.h"
 #include "vtkSMPTools.h"
 #include "vtkSOADataArrayTemplate.h"
+#include "vtkSphereSource.h"
 #include "vtkSteerableNoiseFilter.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTrivialProducer.h"
@@ -965,6 +971,477 @@ TEST(SteerableNoiseFilter, MagnificationOfAnEmptyImageIsEmpty)
   }
 }
 
+TEST(SteerableNoiseFilter, WithoutADirectionItNeedsNoVectors)
+{
+  const auto none = [](vtkSteerableNoiseFilter* filter)
+  { filter->SetDirection(vtkSteerableNoiseFilter::DIRECTION_NONE); };
+  for (const int depth : { 1, 9 })
+  {
+    // The noise of a field that does not steer, with not an array in the data.
+    auto image = MakeImage(20, 15, depth);
+    const std::vector<float> expected = Noise(image, 5.0,
+      [](vtkSteerableNoiseFilter* filter)
+      {
+        filter->SetStrength(0.0);
+        filter->FollowCurvatureOff();
+      });
+    vtkNew<vtkImageData> bare;
+    bare->SetDimensions(20, 15, depth);
+    const std::vector<float> noise = Noise(bare, 5.0, none);
+    ASSERT_EQ(noise.size(), expected.size());
+    for (std::size_t i = 0; i < noise.size(); ++i)
+    {
+      ASSERT_NEAR(noise[i], expected[i], 2e-6) << i;
+    }
+    // Vectors that are there do not count: their length, their masks and their holes.
+    image->GetPointData()->GetVectors()->SetTuple3(7, 0.0, 0.0, 0.0);
+    image->GetPointData()->GetVectors()->SetTuple3(8, -30000.0, -30000.0, -30000.0);
+    EXPECT_EQ(Noise(image, 5.0,
+                [&](vtkSteerableNoiseFilter* filter)
+                {
+                  none(filter);
+                  filter->SetMaskThreshold(1.0);
+                  filter->SetMaskUpperThreshold(2.0);
+                  filter->SetStrengthMode(vtkSteerableNoiseFilter::MAGNITUDE);
+                }),
+      noise);
+  }
+
+  // Any other dataset, with 3D noise at its points: that of a volume around it.
+  vtkNew<vtkRTAnalyticSource> wavelet;
+  wavelet->SetWholeExtent(-4, 4, -3, 3, -2, 2);
+  wavelet->Update();
+  vtkNew<vtkImageData> volume;
+  volume->CopyStructure(wavelet->GetOutput());
+  const std::vector<float> inVolume = Noise(volume, 4.0, none);
+  vtkNew<vtkPolyData> cloud; // not even cells
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType i = 0; i < volume->GetNumberOfPoints(); ++i)
+  {
+    points->InsertNextPoint(volume->GetPoint(i));
+  }
+  cloud->SetPoints(points);
+  EXPECT_EQ(Noise(cloud, 4.0, none), inVolume);
+
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(volume);
+  filter->SetFeatureSize(5.0);
+  none(filter);
+  filter->OutputMetricOn();
+  filter->Update();
+  EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
+  EXPECT_EQ(filter->GetNumberOfDegenerateSamples(), 0);
+  auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  double metric[6];
+  output->GetPointData()->GetArray("Metric")->GetTuple(11, metric);
+  EXPECT_EQ((std::vector<double>(metric, metric + 6)), (std::vector<double>{ 1, 1, 1, 0, 0, 0 }));
+
+  // At the cells where the choice of the array says so.
+  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "");
+  filter->Update();
+  output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  EXPECT_EQ(output->GetPointData()->GetArray("SteerableNoise"), nullptr);
+  ASSERT_NE(output->GetCellData()->GetArray("SteerableNoise"), nullptr);
+  vtkNew<vtkPolyData> centers;
+  vtkNew<vtkPoints> places;
+  places->SetDataTypeToDouble();
+  for (int axis[3] = { 0, 0, -2 }; axis[2] < 2; ++axis[2])
+  {
+    for (axis[1] = -3; axis[1] < 3; ++axis[1])
+    {
+      for (axis[0] = -4; axis[0] < 4; ++axis[0])
+      {
+        places->InsertNextPoint(axis[0] + 0.5, axis[1] + 0.5, axis[2] + 0.5);
+      }
+    }
+  }
+  centers->SetPoints(places);
+  EXPECT_EQ(Values(output), Noise(centers, 5.0, none));
+
+  // Streaks have heads, which need a direction; and whoever lacks vectors is told of this way.
+  filter->SetBasis(vtkSteerableNoiseFilter::STREAKS);
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("direction"), std::string::npos) << messages->Text;
+  vtkNew<vtkSteerableNoiseFilter> steered;
+  auto complaints = Listen(steered);
+  steered->SetInputData(volume);
+  steered->Update();
+  EXPECT_EQ(complaints->Errors, 1);
+  EXPECT_NE(complaints->Text.find("Direction to None"), std::string::npos) << complaints->Text;
+}
+
+/// Noise of the same data with the metrics of `first` in place of the vectors.
+static std::vector<float> NoiseOfItsMetric(
+  vtkDataSet* input, bool cells, bool curved, int use, double scale, std::vector<float>& first)
+{
+  const double featureSize = 5.0;
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  filter->SetInputData(input);
+  filter->SetFeatureSize(featureSize);
+  filter->SetFollowCurvature(curved);
+  filter->OutputMetricOn();
+  filter->Update();
+  first = Values(filter->GetOutputDataObject(0));
+
+  auto again = vtkSmartPointer<vtkDataSet>::Take(input->NewInstance());
+  again->DeepCopy(filter->GetOutputDataObject(0));
+  vtkDataArray* metric = again->GetAttributes(cells ? vtkDataObject::CELL : vtkDataObject::POINT)
+                           ->GetArray("Metric");
+  for (vtkIdType i = 0; i < metric->GetNumberOfTuples(); ++i)
+  {
+    for (int c = 0; c < 6; ++c)
+    {
+      metric->SetComponent(i, c, scale * metric->GetComponent(i, c));
+    }
+  }
+  return Noise(again, featureSize,
+    [&](vtkSteerableNoiseFilter* other)
+    {
+      other->SetInputArrayToProcess(
+        0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, "Metric");
+      other->SetTensorUse(use);
+      other->SetFollowCurvature(curved);
+      other->SetStreakLength(2.0); // which does not count
+      other->SetEigenvalueSum(8.0);
+    });
+}
+
+TEST(SteerableNoiseFilter, ItsMetricAsTheUsersOwnGivesTheSameNoise)
+{
+  const auto expectSame = [](vtkDataSet* input, bool cells, bool curved, const char* what)
+  {
+    for (const bool world : { false, true })
+    {
+      std::vector<float> first;
+      const std::vector<float> again = NoiseOfItsMetric(input, cells, curved,
+        world ? vtkSteerableNoiseFilter::TENSOR_WORLD_METRIC
+              : vtkSteerableNoiseFilter::TENSOR_METRIC,
+        world ? 1.0 / 25.0 : 1.0, first);
+      ASSERT_EQ(again.size(), first.size()) << what;
+      EXPECT_GT(Deviation(first), 0.5) << what;
+      double largest = 0.0;
+      double squares = 0.0;
+      for (std::size_t i = 0; i < first.size(); ++i)
+      {
+        const double difference = std::abs(double(first[i]) - again[i]);
+        largest = std::max(largest, difference);
+        squares += difference * difference / first.size();
+      }
+      // Of a deviation of 1; the kernel's floats round on both ways, and curvature is a difference of them.
+      EXPECT_LE(std::sqrt(squares), curved ? 1e-6 : 4e-7) << what << (world ? ", world" : "");
+      EXPECT_LE(largest, curved ? 1e-5 : 2e-6) << what << (world ? ", world" : "");
+    }
+  };
+  expectSame(MakeImage(40, 30, 1), false, false, "flat image");
+  expectSame(MakeImage(40, 30, 1), false, true, "flat image, curved");
+  expectSame(MakeImage(30, 1, 20, 1.0, true), true, false, "cells of a flat image");
+  expectSame(MakeImage(16, 12, 14), false, false, "volume");
+  auto turned = MakeImage(30, 20, 1);
+  const double c = std::cos(0.4);
+  const double s = std::sin(0.4);
+  turned->SetDirectionMatrix(c, 0, s, 0, 1, 0, -s, 0, c);
+  expectSame(turned, false, false, "turned image");
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetRadius(20.0);
+  sphere->SetThetaResolution(40);
+  sphere->SetPhiResolution(30);
+  sphere->Update();
+  vtkPolyData* surface = sphere->GetOutput();
+  AddFlow(surface);
+  expectSame(surface, false, false, "surface");
+}
+
+TEST(SteerableNoiseFilter, AMetricOfTheUsersOwnIsTakenAsItIs)
+{
+  // (0.8, 2.0) stays (0.8, 2.0), on an image, and with four components.
+  for (const int components : { 4, 6, 9 })
+  {
+    vtkNew<vtkImageData> image;
+    image->SetDimensions(20, 20, 1);
+    vtkNew<vtkFloatArray> metric;
+    metric->SetName("G");
+    metric->SetNumberOfComponents(components);
+    metric->SetNumberOfTuples(400);
+    metric->Fill(0.0);
+    for (vtkIdType i = 0; i < 400; ++i)
+    {
+      metric->SetComponent(i, 0, 0.8);
+      metric->SetComponent(i, components == 6 ? 1 : components == 4 ? 3 : 4, 2.0);
+    }
+    metric->SetTuple(7, std::vector<double>(9, 0.0).data()); // no metric: blank
+    image->GetPointData()->AddArray(metric);
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    auto messages = Listen(filter);
+    filter->SetInputData(image);
+    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "G");
+    filter->SetTensorUse(vtkSteerableNoiseFilter::TENSOR_METRIC);
+    filter->SetFeatureSize(5.0);
+    filter->OutputMetricOn();
+    filter->Update();
+    EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
+    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    double tuple[6];
+    output->GetPointData()->GetArray("Metric")->GetTuple(50, tuple);
+    EXPECT_NEAR(tuple[0], 0.8, 1e-7);
+    EXPECT_NEAR(tuple[1], 2.0, 1e-7);
+    EXPECT_NEAR(tuple[3], 0.0, 1e-7);
+    EXPECT_EQ(Values(output)[7], 0.0f);
+    EXPECT_EQ(filter->GetNumberOfDegenerateSamples(), 1);
+
+    // In world units a cell of 5 makes it 25 times as large, which is bounded and told of.
+    filter->SetTensorUse(vtkSteerableNoiseFilter::TENSOR_WORLD_METRIC);
+    filter->Update();
+    EXPECT_EQ(messages->Warnings, 1);
+    EXPECT_NE(messages->Text.find("399 metrics"), std::string::npos) << messages->Text;
+    filter->GetOutputDataObject(0);
+    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))
+      ->GetPointData()
+      ->GetArray("Metric")
+      ->GetTuple(50, tuple);
+    EXPECT_NEAR(tuple[0], 16.0, 1e-12);
+
+    // A mask goes by the tensors' own norm, whatever the unit: 2.154.
+    filter->SetFeatureSize(2.0);
+    filter->SetMaskThreshold(2.1);
+    filter->Update();
+    EXPECT_EQ(filter->GetNumberOfStagnantSamples(), 1); // which has no metric
+    filter->SetMaskThreshold(2.2);
+    filter->Update();
+    EXPECT_EQ(filter->GetNumberOfStagnantSamples(), 400);
+  }
+}
+
+/// Perlin's noise in the plane as Kensler sums it, of a falloff that reaches `reach` cells.
+static double PlainPerlinNoise(double x, double y, const std::function<double(double)>& f,
+  int reach, bool radial, steerable::GradientSet set)
+{
+  double sum = 0.0;
+  const int cx = static_cast<int>(std::floor(x));
+  const int cy = static_cast<int>(std::floor(y));
+  for (int gy = cy - reach + 1; gy <= cy + reach; ++gy)
+  {
+    for (int gx = cx - reach + 1; gx <= cx + reach; ++gx)
+    {
+      const std::uint32_t hash = steerable::HashCorner(gx, gy, 0, 0);
+      const steerable::Vector<2> g = steerable::GradientOf<2>(set, hash);
+      const double falloff =
+        radial ? f(std::hypot(x - gx, y - gy)) : f(x - gx) * f(y - gy);
+      sum += falloff * (g[0] * (gx - x) + g[1] * (gy - y));
+    }
+  }
+  return sum;
+}
+
+TEST(SteerableNoiseFilter, GivesPerlinsNoiseAndItsVariants)
+{
+  const auto cubic = [](double t)
+  {
+    t = std::abs(t);
+    return t >= 1.0 ? 0.0 : 1.0 - (3.0 - 2.0 * t) * t * t;
+  };
+  const auto quintic = [](double t)
+  {
+    t = std::abs(t);
+    return t >= 1.0 ? 0.0 : 1.0 - ((6.0 * t - 15.0) * t + 10.0) * t * t * t;
+  };
+  const auto wide = [](double t)
+  {
+    t = 1.0 - 0.25 * t * t;
+    return t < 0.0 ? 0.0 : (4.0 * t - 3.0) * t * t * t * t;
+  };
+  vtkNew<vtkImageData> image; // without an array
+  image->SetDimensions(50, 40, 1);
+  image->SetOrigin(-7.3, 2.1, 0.0);
+  using Filter = vtkSteerableNoiseFilter;
+  struct Case
+  {
+    int Fade;
+    std::function<double(double)> F;
+    int Reach;
+    int Falloff;
+    int GradientSet;
+  };
+  for (const Case& test : { Case{ Filter::QUINTIC, quintic, 1, Filter::SEPARABLE, Filter::UNIFORM },
+         Case{ Filter::CUBIC, cubic, 1, Filter::SEPARABLE, Filter::PERLIN },
+         Case{ Filter::WIDE, wide, 2, Filter::SEPARABLE, Filter::UNIFORM },
+         Case{ Filter::WIDE, wide, 2, Filter::RADIAL, Filter::PERLIN },
+         Case{ Filter::CUBIC, cubic, 1, Filter::RADIAL, Filter::UNIFORM } })
+  {
+    const std::vector<float> noise = Noise(image, 4.0,
+      [&](Filter* filter)
+      {
+        filter->SetModel(Filter::MODEL_PERLIN);
+        filter->SetFade(test.Fade);
+        filter->SetFalloff(test.Falloff);
+        filter->SetGradientSet(test.GradientSet);
+        filter->SetQuality(3); // these do not count
+        filter->SetStrengthMode(Filter::MAGNITUDE);
+        filter->SetMaskThreshold(1.0);
+      });
+    ASSERT_EQ(noise.size(), 2000u);
+    EXPECT_GT(Deviation(noise), 0.1);
+    for (std::size_t i = 0; i < noise.size(); ++i)
+    {
+      const double expected = PlainPerlinNoise((-7.3 + i % 50) / 4.0, (2.1 + i / 50) / 4.0, test.F,
+        test.Reach, test.Falloff == Filter::RADIAL,
+        static_cast<steerable::GradientSet>(test.GradientSet));
+      ASSERT_NEAR(noise[i], expected, 1e-6) << test.Fade << " " << test.Falloff << ", " << i;
+    }
+  }
+}
+
+TEST(SteerableNoiseFilter, TakesThePaperApart)
+{
+  auto image = MakeImage(50, 40, 1);
+  const auto noise = [&](bool weight, bool projection)
+  {
+    return Noise(image, 5.0,
+      [&](vtkSteerableNoiseFilter* filter)
+      {
+        filter->LatticeWindowOn();
+        filter->SetEigenvalueSum(4.0);
+        filter->SetQuality(0);
+        filter->SetNormalization(vtkSteerableNoiseFilter::NONE);
+        filter->SetAnisotropicWeight(weight);
+        filter->SetMetricInProjection(projection);
+        filter->FollowCurvatureOff();
+      });
+  };
+  // Fig. 2 a, with the vectors there: Perlin's noise.
+  const std::vector<float> a = noise(false, false);
+  EXPECT_EQ(a, Noise(image, 5.0, [](vtkSteerableNoiseFilter* filter)
+    { filter->SetModel(vtkSteerableNoiseFilter::MODEL_PERLIN); }));
+  // b, c and what is neither, by Rice's own loop.
+  vtkDataArray* vectors = image->GetPointData()->GetVectors();
+  const auto fade = [](double t) { return steerable::FadeOf(steerable::Fade::Quintic, t); };
+  for (const bool weight : { false, true })
+  {
+    for (const bool projection : { false, true })
+    {
+      const std::vector<float> found = noise(weight, projection);
+      for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
+      {
+        Eigen::Vector2d u(vectors->GetComponent(i, 0), vectors->GetComponent(i, 1));
+        u.normalize();
+        const double k = 0.5;
+        const double b = 4.0 - k - 1e-4;
+        const Eigen::Matrix2d G =
+          b * Eigen::Matrix2d::Identity() + (k - b) * u * u.transpose();
+        const Eigen::Vector2d p(i % 50 / 5.0, i / 50 / 5.0);
+        double sum = 0.0;
+        for (int corner = 0; corner < 4; ++corner)
+        {
+          const int x = static_cast<int>(std::floor(p[0])) + corner % 2;
+          const int y = static_cast<int>(std::floor(p[1])) + corner / 2;
+          const Eigen::Vector2d v(x - p[0], y - p[1]);
+          const Eigen::Vector2d r =
+            steerable::GradientOf<2>(steerable::GradientSet::Uniform, steerable::HashCorner(x, y, 0, 0));
+          const double d = r.dot(projection ? Eigen::Vector2d(G * v) : v);
+          sum += d * fade(v[0]) * fade(v[1]) * (weight ? fade(v.dot(G * v)) : 1.0);
+        }
+        ASSERT_NEAR(found[i], sum, 2e-6) << weight << projection << ", " << i;
+      }
+    }
+  }
+  // Without any bound of the surflets there is no noise, but a sentence.
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(image);
+  filter->AnisotropicWeightOff();
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("LatticeWindow"), std::string::npos) << messages->Text;
+}
+
+TEST(SteerableNoiseFilter, LengthStrengthAndSumComeFromArrays)
+{
+  using Filter = vtkSteerableNoiseFilter;
+  for (const bool cells : { false, true })
+  {
+    auto image = MakeImage(40, 30, 1, 1.0, cells);
+    const vtkIdType count = cells ? image->GetNumberOfCells() : image->GetNumberOfPoints();
+    vtkDataSetAttributes* attributes = image->GetAttributes(cells ? vtkDataObject::CELL : vtkDataObject::POINT);
+    const auto addHalves = [&](const char* name, double left, double right, int components)
+    {
+      vtkNew<vtkDoubleArray> array;
+      array->SetName(name);
+      array->SetNumberOfComponents(components);
+      array->SetNumberOfTuples(count);
+      array->Fill(0.0);
+      for (vtkIdType i = 0; i < count; ++i)
+      {
+        array->SetComponent(i, components - 1, i % 2 ? right : left);
+      }
+      attributes->AddArray(array);
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    addHalves("length", 2.0, nan, 1);
+    addHalves("strength", 0.3, 1.0, 1);
+    addHalves("sum", -2.5, 3.2, 3); // a vector's length
+    const auto with = [&](const std::function<void(Filter*)>& configure)
+    {
+      return Noise(image, 5.0,
+        [&](Filter* filter)
+        {
+          filter->FollowCurvatureOff();
+          configure(filter);
+        });
+    };
+    const int place = cells ? vtkDataObject::FIELD_ASSOCIATION_CELLS : vtkDataObject::FIELD_ASSOCIATION_POINTS;
+    const std::vector<float> varied = with(
+      [&](Filter* filter)
+      {
+        filter->SetInputArrayToProcess(Filter::STREAK_LENGTH_ARRAY, 0, 0, place, "length");
+        filter->SetInputArrayToProcess(Filter::STRENGTH_ARRAY, 0, 0, place, "strength");
+        filter->SetInputArrayToProcess(Filter::EIGENVALUE_SUM_ARRAY, 0, 0, place, "sum");
+      });
+    const std::vector<float> left = with(
+      [&](Filter* filter)
+      {
+        filter->SetStreakLength(2.0);
+        filter->SetStrength(0.3);
+        filter->SetEigenvalueSum(2.5);
+        filter->SetInputArrayToProcess(Filter::STRENGTH_ARRAY, 0, 0, place, "None");
+      });
+    const std::vector<float> right = with([](Filter*) {});
+    ASSERT_EQ(varied.size(), static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < varied.size(); ++i)
+    {
+      ASSERT_NEAR(varied[i], (i % 2 ? right : left)[i], 3e-6) << i;
+    }
+    EXPECT_NE(left, right);
+  }
+
+  // The metric has them too; and what cannot be used is told of.
+  auto image = MakeImage(20, 20, 1);
+  vtkNew<vtkFloatArray> length;
+  length->SetName("length");
+  length->SetNumberOfTuples(400);
+  length->Fill(2.0);
+  image->GetPointData()->AddArray(length);
+  vtkNew<Filter> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(image);
+  filter->SetFeatureSize(5.0);
+  filter->SetInputArrayToProcess(Filter::STREAK_LENGTH_ARRAY, 0, 0, 0, "length");
+  filter->OutputMetricOn();
+  filter->Update();
+  EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
+  double metric[6];
+  vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))
+    ->GetPointData()->GetArray("Metric")->GetTuple(50, metric);
+  EXPECT_NEAR(metric[0] * metric[1] - metric[3] * metric[3], 0.25 * (3.2 - 0.25 - 1e-4), 1e-6);
+  filter->SetInputArrayToProcess(Filter::STREAK_LENGTH_ARRAY, 0, 0, 0, "");
+  filter->SetInputArrayToProcess(Filter::EIGENVALUE_SUM_ARRAY, 0, 0, 0, "nothing");
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("'nothing' for EigenvalueSum is not on the points"), std::string::npos)
+    << messages->Text;
+}
+
 TEST(SteerableNoiseFilter, OutputMetricIsTheMetric)
 {
   auto image = MakeImage(8, 7, 6);
@@ -1054,7 +1531,7 @@ TEST(SteerableNoiseFilter, EveryPropertyIsPrinted)
   vtkNew<vtkSteerableNoiseFilter> filter;
   std::ostringstream text;
   filter->Print(text);
-  for (const char* name : { "FeatureSize", "StreakLength", "Quality", "MinimumEigenvalue", "EigenvalueSum",
+  for (const char* name : { "Model", "Direction", "TensorUse", "AnisotropicWeight", "MetricInProjection", "FeatureSize", "StreakLength", "Quality", "MinimumEigenvalue", "EigenvalueSum",
          "LatticeWindow", "Strength", "StrengthMode", "ReferenceMagnitude", "Normalization",
          "FollowCurvature", "Basis", "Density", "Phase", "Animate", "Speed", "TimePeriod", "TimeSteps",
          "Octaves", "Lacunarity", "Gain", "Turbulence", "Fade", "Falloff", "Lattice", "GradientSet",

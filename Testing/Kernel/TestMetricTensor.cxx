@@ -170,6 +170,65 @@ double LeastWeight(int quality, int directions, int samples, bool axes = false)
 }
 } // namespace
 
+TEST(MetricTensor, KeepsAMetricOfTheUsersOwn)
+{
+  const NoiseParameters parameters;
+  // Closed forms: what is within the bounds stays, on axes as they are.
+  bool bounded = true;
+  Matrix<2> plane;
+  plane << 0.8, 0.0, 0.0, 2.0;
+  AxialMetric<2> metric = MetricFromMetric<2>(parameters, plane, plane.norm(), &bounded);
+  EXPECT_FALSE(bounded);
+  EXPECT_FALSE(metric.Degenerate);
+  EXPECT_TRUE(metric.ToMatrix().isApprox(plane, 1e-15)) << metric.ToMatrix();
+  EXPECT_DOUBLE_EQ(metric.Along, 0.8);
+  EXPECT_DOUBLE_EQ(metric.Across, 2.0);
+  EXPECT_NEAR(std::abs(metric.Direction[0]), 1.0, 1e-15);
+  EXPECT_EQ(metric.Clarity, 1.0);
+
+  Matrix<3> space;
+  space << 1.1, 0.3, -0.2, 0.3, 0.9, 0.4, -0.2, 0.4, 5.0;
+  Matrix<3> lopsided = space; // the symmetric part counts
+  lopsided(0, 1) += 0.5;
+  lopsided(1, 0) -= 0.5;
+  const AxialMetric<3> volume =
+    MetricFromMetric<3>(parameters, lopsided, lopsided.norm(), &bounded);
+  EXPECT_FALSE(bounded);
+  EXPECT_TRUE(volume.ToMatrix().isApprox(space, 1e-13)) << volume.ToMatrix();
+  EXPECT_LE(volume.Along, volume.Second);
+  EXPECT_LE(volume.Second, volume.Across);
+
+  // What is not is moved to the nearest bound, alone.
+  plane << -1.0, 0.0, 0.0, 100.0;
+  metric = MetricFromMetric<2>(parameters, plane, plane.norm(), &bounded);
+  EXPECT_TRUE(bounded);
+  EXPECT_NEAR(metric.Along, 1.0 / 400.0, 1e-15);
+  EXPECT_DOUBLE_EQ(metric.Across, 16.0);
+  NoiseParameters window = parameters;
+  window.LatticeWindow = true;
+  EXPECT_NEAR(MetricFromMetric<2>(window, plane, plane.norm()).Along, 1e-3, 1e-15);
+
+  // Half the strength is half way to the identity, and a length that counts is that of the whole.
+  NoiseParameters half = parameters;
+  half.Strength = 0.5;
+  plane << 0.8, 0.0, 0.0, 2.0;
+  metric = MetricFromMetric<2>(half, plane, plane.norm());
+  EXPECT_DOUBLE_EQ(metric.Along, 0.9);
+  EXPECT_DOUBLE_EQ(metric.Across, 1.5);
+  half.StrengthBy = StrengthMode::Magnitude;
+  half.ReferenceMagnitude = 10.0;
+  EXPECT_DOUBLE_EQ(MetricFromMetric<2>(half, plane, 5.0).Across, 1.25);
+
+  // Alike in all directions: round, and its curvature means nothing. Zero and NaN are no metrics.
+  const Matrix<2> ball = 3.0 * Matrix<2>::Identity();
+  const AxialMetric<2> round = MetricFromMetric<2>(parameters, ball, 3.0);
+  EXPECT_TRUE(round.ToMatrix().isApprox(ball, 1e-15));
+  EXPECT_EQ(round.Clarity, 0.0);
+  EXPECT_TRUE(MetricFromMetric<2>(parameters, Matrix<2>::Zero(), 0.0).Degenerate);
+  plane(0, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(MetricFromMetric<2>(parameters, plane, 1.0).Degenerate);
+}
+
 TEST(MetricTensor, EqualsTheEigenRouteOfTheSupplementary)
 {
   ExpectSupplementaryMetric<2>();

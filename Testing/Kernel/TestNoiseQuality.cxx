@@ -218,6 +218,17 @@ std::vector<KenslerCase> KenslerCases()
   KenslerCase& cubic = add("cubic");
   cubic.Parameters.Interpolant = Fade::Cubic;
   cubic.Parts.Falloff = KenslerCubic;
+  KenslerCase& classic = add("cubic, Perlin's gradients, period");
+  classic.Parameters.Interpolant = Fade::Cubic;
+  classic.Parameters.Gradients = GradientSet::Perlin;
+  classic.Parameters.Period = { 4, 3, 5 };
+  classic.Parts.Falloff = KenslerCubic;
+  classic.Parts.Gradients = GradientSet::Perlin;
+  classic.Parts.Period = { 4, 3, 5 };
+  // Rice's Fig. 2 a: the vectors are there and do not matter.
+  KenslerCase& unsteered = add("no metric anywhere");
+  unsteered.Parameters.Strength = 1.0;
+  unsteered.Parameters.MetricInProjection = false;
   KenslerCase& wide = add("wide");
   wide.Parameters.Interpolant = Fade::Wide;
   wide.Parts.Falloff = KenslerWide;

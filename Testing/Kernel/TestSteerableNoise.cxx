@@ -3,6 +3,8 @@
 /// The fast path: equal to the reference at every SIMD level, to the bit however it is split.
 #include "KernelTestHelpers.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -278,6 +280,36 @@ const std::vector<Variant>& Variants()
         p.AnisotropicWeight = false;
         p.Normalize = Normalization::None;
         p.Quality = 0;
+      } },
+    { "MetricInProjection off", [](P& p) { p.MetricInProjection = false; } },
+    { "MetricInProjection off, Motion, Jittered",
+      [](P& p)
+      {
+        p.MetricInProjection = false;
+        p.Motion = true;
+        p.Phase = 0.3;
+        p.Grid = Lattice::Jittered;
+      } },
+    { "AnisotropicWeight and MetricInProjection off, Perlin, None",
+      [](P& p)
+      {
+        p.LatticeWindow = true;
+        p.AnisotropicWeight = false;
+        p.MetricInProjection = false;
+        p.Normalize = Normalization::None;
+        p.Quality = 0;
+        p.Gradients = GradientSet::Perlin;
+      } },
+    { "AnisotropicWeight off, Cubic, Octaves 2, Period",
+      [](P& p)
+      {
+        p.LatticeWindow = true;
+        p.AnisotropicWeight = false;
+        p.Normalize = Normalization::None;
+        p.Quality = 0;
+        p.Interpolant = Fade::Cubic;
+        p.Octaves = 2;
+        p.Period = { 4, 5, 3 };
       } },
     { "Seed 12345", [](P& p) { p.Seed = 12345; } },
     { "Seed 2^32 - 1, Octaves 3",
@@ -786,6 +818,37 @@ TEST(SteerableNoise, EqualsTheReferenceOnImages)
   }
 }
 
+TEST(SteerableNoise, EqualsTheReferenceInTheCellsOfImages)
+{
+  // What needs the corners of the sample's own cell alone: Rice's Fig. 2 a and b, and Perlin's noise.
+  for (const bool metric : { false, true })
+  {
+    for (const Fade fade : { Fade::Cubic, Fade::Quintic })
+    {
+      for (const GradientSet gradients : { GradientSet::Uniform, GradientSet::Perlin })
+      {
+        NoiseParameters parameters = PaperModel(0);
+        parameters.FollowCurvature = false;
+        parameters.Normalize = Normalization::None;
+        parameters.FeatureSize = 1.5;
+        parameters.AnisotropicWeight = false;
+        parameters.MetricInProjection = metric;
+        parameters.Interpolant = fade;
+        parameters.Gradients = gradients;
+        ExpectReferenceOfImages<2>(parameters, SmallGrid(2), Swirl, "2D cells", Bound);
+        ExpectReferenceOfImages<3>(parameters, SmallGrid(3), Swirl, "3D cells", Bound);
+        // Steps of more than a cell have lanes hashed by themselves.
+        parameters.FeatureSize = 0.05;
+        ExpectReferenceOfImages<2>(parameters, SmallGrid(2), Swirl, "2D cells, far", Bound);
+        EvaluationCounts counts;
+        const ImageGrid grid = SmallGrid(3);
+        ImageNoise(parameters, 3, grid, SampleVectors(grid, Swirl), &counts);
+        EXPECT_EQ(counts.VisitedCorners, 8 * grid.GetNumberOfRows() * grid.Dimensions[0]);
+      }
+    }
+  }
+}
+
 TEST(SteerableNoise, EqualsTheReferenceOnUnusualImages)
 {
   NoiseParameters parameters = PaperModel(2);
@@ -1199,6 +1262,247 @@ TEST(SteerableNoise, GivesFiniteNoiseWithoutADirection)
   }
 }
 
+namespace
+{
+/// Noise of metrics of 6 components at the places of the samples.
+template <int N>
+std::vector<float> NoiseOfMetrics(const NoiseParameters& parameters, const RandomSamples& samples,
+  const std::vector<double>& metrics, EvaluationCounts& counts)
+{
+  const ContiguousReader<double, 3> positions(samples.Positions.data());
+  const ContiguousReader<double, 6> reader(metrics.data());
+  Field field;
+  field.Metrics = &reader;
+  std::vector<float> noise(samples.Count);
+  counts =
+    SteerableNoise(parameters, N).EvaluatePoints(positions, field, 0, samples.Count, noise.data());
+  return noise;
+}
+
+template <int N>
+void ExpectNoiseOfMetrics(NoiseParameters parameters, double least, double most)
+{
+  parameters.FollowCurvature = false;
+  const RandomSamples samples(N == 2 ? 300 : 60, 30.0, 0.0, 17);
+  std::vector<double> metrics;
+  std::vector<double> slow;
+  for (std::size_t i = 0; i < samples.Count; ++i)
+  {
+    // Eigenvalues anywhere between the bounds on the axes of a random tensor.
+    const Matrix<N> random = TensorOf<N>(samples.Tensors.data() + 6 * i);
+    Eigen::SelfAdjointEigenSolver<Matrix<N>> solver(random);
+    Vector<N> lambda;
+    for (int axis = 0; axis < N; ++axis)
+    {
+      const double share = 0.5 + 0.5 * std::sin(7.0 * i + 2.0 * axis);
+      lambda[axis] = std::exp(std::log(least) + share * std::log(most / least));
+    }
+    const Matrix<N> G =
+      solver.eigenvectors() * lambda.asDiagonal() * solver.eigenvectors().transpose();
+    Matrix<3> full = Matrix<3>::Zero();
+    full.topLeftCorner<N, N>() = G;
+    metrics.insert(
+      metrics.end(), { full(0, 0), full(1, 1), full(2, 2), full(0, 1), full(1, 2), full(0, 2) });
+    slow.push_back(SteerableNoiseReference<N>(
+      parameters, samples.GetPosition<N>(i), MetricFromMetric<N>(parameters, G, G.norm())));
+  }
+  EvaluationCounts counts;
+  const std::vector<float> noise = NoiseOfMetrics<N>(parameters, samples, metrics, counts);
+  EXPECT_LE(LargestDifference(noise, slow), 5e-6) << N << "D, from " << least << " to " << most;
+  EXPECT_EQ(counts.Degenerate + counts.Bounded, 0u);
+  EXPECT_GT(*std::max_element(slow.begin(), slow.end()), 0.5) << "something to compare";
+}
+
+template <int N>
+void ExpectTheSameNoiseOfTheirMetrics(Steering steering)
+{
+  for (NoiseParameters parameters : { NoiseParameters(), PaperModel(0), PaperModel(4) })
+  {
+    parameters.FollowCurvature = false;
+    parameters.Strength = 0.9;
+    const RandomSamples samples(N == 2 ? 2000 : 500, 30.0, 0.0, 19);
+    std::vector<double> metrics;
+    for (std::size_t i = 0; i < samples.Count; ++i)
+    {
+      Matrix<3> G = Matrix<3>::Zero();
+      G.topLeftCorner<N, N>() =
+        ReferenceMetric<N>(parameters, samples, i, steering).ToMatrix();
+      metrics.insert(metrics.end(), { G(0, 0), G(1, 1), G(2, 2), G(0, 1), G(1, 2), G(0, 2) });
+    }
+    const std::vector<float> expected = FastNoise<N>(parameters, samples, steering);
+    parameters.Strength = 1.0;
+    EvaluationCounts counts;
+    const std::vector<float> again = NoiseOfMetrics<N>(parameters, samples, metrics, counts);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < samples.Count; ++i)
+    {
+      squares += std::pow(double(again[i]) - expected[i], 2) / samples.Count;
+    }
+    const std::string what =
+      std::to_string(N) + "D" + (parameters.LatticeWindow ? ", window" : "");
+    EXPECT_LE(std::sqrt(squares), 4e-7) << what;
+    EXPECT_LE(LargestDifference(again, expected), Bound) << what; // floats on both ways
+    EXPECT_EQ(counts.Bounded, 0u);
+  }
+}
+} // namespace
+
+TEST(SteerableNoise, TakesAMetricOfTheUsersOwn)
+{
+  const NoiseParameters free;
+  ExpectNoiseOfMetrics<2>(free, 1.0 / 400.0, 16.0);
+  ExpectNoiseOfMetrics<2>(free, 0.3, 3.0);
+  ExpectNoiseOfMetrics<3>(free, 0.1, 16.0);
+  ExpectNoiseOfMetrics<3>(free, 0.3, 3.0);
+  ExpectNoiseOfMetrics<2>(PaperModel(4), 1e-3, 16.0);
+  ExpectNoiseOfMetrics<3>(PaperModel(1), 1e-3, 16.0);
+  NoiseParameters variant;
+  variant.Interpolant = Fade::Cubic;
+  variant.Grid = Lattice::Jittered;
+  variant.Octaves = 2;
+  ExpectNoiseOfMetrics<2>(variant, 0.1, 4.0);
+
+  // All in one row with others and alone, what is no metric and what is bounded is counted.
+  const RandomSamples samples(5, 30.0, 0.0);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<double> metrics = { 0.8, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, nan, 1, 1, 0, 0, 0, //
+    1e-9, 1, 1, 0, 0, 0, 1, 1e9, 1, 0, 0, 0 };
+  EvaluationCounts counts;
+  const std::vector<float> noise = NoiseOfMetrics<3>(free, samples, metrics, counts);
+  EXPECT_EQ(counts.Degenerate, 2u);
+  EXPECT_EQ(counts.Bounded, 2u);
+  EXPECT_TRUE(std::all_of(noise.begin(), noise.end(), [](float x) { return std::isfinite(x); }));
+}
+
+TEST(SteerableNoise, ItsMetricGivesTheSameNoiseAgain)
+{
+  ExpectTheSameNoiseOfTheirMetrics<2>(Steering::Vectors);
+  ExpectTheSameNoiseOfTheirMetrics<2>(Steering::Tensors);
+  ExpectTheSameNoiseOfTheirMetrics<3>(Steering::Vectors);
+  ExpectTheSameNoiseOfTheirMetrics<3>(Steering::Normals);
+  ExpectTheSameNoiseOfTheirMetrics<3>(Steering::Tensors);
+}
+
+TEST(SteerableNoise, TakesLengthStrengthAndSumOfEverySample)
+{
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  NoiseParameters weights;
+  weights.Normalize = Normalization::WeightSum;
+  NoiseParameters cells = PaperModel(0);
+  cells.Normalize = Normalization::None;
+  NoiseParameters magnitude;
+  magnitude.StrengthBy = StrengthMode::Magnitude;
+  magnitude.ReferenceMagnitude = 2.0;
+  for (NoiseParameters parameters :
+    { NoiseParameters(), PaperModel(3), weights, cells, magnitude })
+  {
+    parameters.FollowCurvature = false;
+    for (const Steering steering : { Steering::Vectors, Steering::Normals, Steering::Tensors })
+    {
+      RandomSamples samples(120, 30.0, 0.0, 23);
+      samples.Normals[3] = samples.Normals[4] = samples.Normals[5] = 0.0f; // off the surface
+      std::fill_n(samples.Vectors.begin() + 6, 3, 0.0f);                   // without a direction
+      std::vector<float> shapes;
+      for (std::size_t i = 0; i < samples.Count; ++i)
+      {
+        const float a = static_cast<float>(i);
+        shapes.insert(shapes.end(),
+          { 3.0f + 2.9f * std::sin(a), 0.5f + 0.6f * std::sin(2.0f * a), 4.0f + 3.0f * std::sin(3.0f * a) });
+      }
+      std::fill_n(shapes.begin() + 30, 3, nan); // those of the parameters
+      shapes[33] = 1000.0f;                     // its greatest
+      std::vector<double> slow;
+      for (std::size_t i = 0; i < samples.Count; ++i)
+      {
+        NoiseParameters own = parameters;
+        const auto take = [&](double& value, float given, double least, double most)
+        { value = std::isnan(given) ? value : std::clamp<double>(given, least, most); };
+        take(own.StreakLength, shapes[3 * i], 1.0, 20.0);
+        take(own.Strength, shapes[3 * i + 1], 0.0, 1.0);
+        take(own.EigenvalueSum, shapes[3 * i + 2], 2.0,
+          own.Normalize == Normalization::WeightSum ? 4.0 : 16.0);
+        slow.push_back(SteerableNoiseReference<3>(
+          parameters, samples.GetPosition<3>(i), ReferenceMetric<3>(own, samples, i, steering)));
+      }
+      const ContiguousReader<double, 3> positions(samples.Positions.data());
+      const ContiguousReader<float, 3> vectors(samples.Vectors.data());
+      const ContiguousReader<float, 3> normals(samples.Normals.data());
+      const ContiguousReader<float, 6> tensors(samples.Tensors.data());
+      const ContiguousReader<float, 3> shapeReader(shapes.data());
+      Field field;
+      field.Vectors = steering == Steering::Tensors ? nullptr : &vectors;
+      field.Tensors = steering == Steering::Tensors ? &tensors : nullptr;
+      field.Normals = steering == Steering::Normals ? &normals : nullptr;
+      field.Shapes = &shapeReader;
+      std::vector<float> noise(samples.Count);
+      SteerableNoise(parameters, 3)
+        .EvaluatePoints(positions, field, 0, samples.Count, noise.data());
+      EXPECT_LE(LargestDifference(noise, slow),
+        parameters.Normalize == Normalization::WeightSum ? 2e-5 : LooseBound)
+        << static_cast<int>(steering) << ", Quality " << parameters.Quality;
+    }
+  }
+}
+
+TEST(SteerableNoise, IsIsotropicWhereNothingSteers)
+{
+  // Zero vectors are isotropic as well, but count as a lack.
+  const auto expect = [](const Variant& variant, NoiseParameters parameters)
+  {
+    variant.Change(parameters);
+    if (parameters.Surflet == Basis::Streaks)
+    {
+      return;
+    }
+    RandomSamples samples(200, 20.0, 0.2, 13);
+    std::fill(samples.Vectors.begin(), samples.Vectors.end(), 0.0f);
+    const ContiguousReader<double, 3> positions(samples.Positions.data());
+    Field field;
+    field.Isotropic = true;
+    const SteerableNoise kernel(parameters, 3);
+    std::vector<float> noise(samples.Count);
+    const EvaluationCounts counts =
+      kernel.EvaluatePoints(positions, field, 0, samples.Count, noise.data());
+    EXPECT_EQ(counts.Degenerate + counts.Stagnant, 0u) << variant.Name;
+    parameters.FollowCurvature = false; // which the vectors would have otherwise
+    EXPECT_EQ(noise, FastNoise<3>(parameters, samples, Steering::Vectors)) << variant.Name;
+    std::vector<double> slow;
+    for (std::size_t i = 0; i < 20; ++i)
+    {
+      slow.push_back(SteerableNoiseReference<3>(
+        parameters, samples.GetPosition<3>(i), AxialMetric<3>()));
+    }
+    noise.resize(20);
+    EXPECT_LE(LargestDifference(noise, slow), variant.Bound) << variant.Name;
+
+    // Images: the same rows from zero vectors.
+    const ImageGrid grid = SmallGrid(2);
+    const std::vector<float> zero(3 * grid.GetNumberOfRows() * grid.Dimensions[0], 0.0f);
+    std::vector<float> image(zero.size() / 3);
+    SteerableNoise(parameters, 2)
+      .EvaluateImage(grid, field, 0, grid.GetNumberOfRows(), image.data());
+    EXPECT_EQ(image, ImageNoise(parameters, 2, grid, zero)) << variant.Name;
+  };
+  for (const Variant& variant : Variants())
+  {
+    expect(variant, NoiseParameters());
+    expect(variant, PaperModel(0));
+  }
+  // What goes by the vectors does not count.
+  const Variant mask = { "MaskThreshold", [](NoiseParameters& p) { p.MaskThreshold = 1.0; } };
+  const RandomSamples samples(50, 20.0, 0.0);
+  const ContiguousReader<double, 3> positions(samples.Positions.data());
+  Field field;
+  field.Isotropic = true;
+  std::vector<float> plain(50);
+  std::vector<float> masked(50);
+  NoiseParameters parameters;
+  SteerableNoise(parameters, 3).EvaluatePoints(positions, field, 0, 50, plain.data());
+  mask.Change(parameters);
+  SteerableNoise(parameters, 3).EvaluatePoints(positions, field, 0, 50, masked.data());
+  EXPECT_EQ(masked, plain);
+}
+
 TEST(SteerableNoise, GivesFiniteNoiseForTensorsWithoutADirection)
 {
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -1467,7 +1771,19 @@ TEST(SteerableNoise, RefusesWhatItCannotDo)
   const SteerableNoise space(NoiseParameters(), 3);
   Field field;
   EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
+  NoiseParameters streaks;
+  streaks.Surflet = Basis::Streaks;
+  field.Isotropic = true;
+  EXPECT_THROW(SteerableNoise(streaks, 2).EvaluatePoints(positions, field, 0, 1, &noise),
+    std::invalid_argument);
   field.Vectors = &vectors;
+  EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
+  field.Isotropic = false;
+  const double metric[6] = { 1, 1, 1, 0, 0, 0 };
+  const ContiguousReader<double, 6> metrics(metric);
+  field.Metrics = &metrics;
+  EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
+  field.Metrics = nullptr;
   field.Tensors = &tensors;
   EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
   field.Tensors = nullptr;

@@ -190,6 +190,45 @@ TEST(SubbandTiles, EnergyIsConcentratedAroundTheOrientation)
   }
 }
 
+TEST(SubbandTiles, BandsAndResidualsSumToWhiteNoise)
+{
+  for (const int K : { 3, 8 })
+  {
+    const SubbandParameters p = Pyramid(K, 3, 64, 0.125);
+    const SubbandTiles tiles = MakeSubbandTiles(p);
+    const std::vector<float> residuals = MakeResidualTiles(p);
+    const Field white =
+      SynthesizeNoise(p.TileSize, p.Seed, p.Realization, [](int, int) { return 1.0; });
+    double inside = 0.0;
+    double largest = 0.0;
+    for (std::size_t texel = 0; texel < white.size(); ++texel)
+    {
+      const float* bands = tiles.Values.data() + texel * p.Components();
+      const double sum = std::accumulate(bands, bands + p.Components(), 0.0);
+      inside += sum * sum / white.size();
+      largest = std::max(largest,
+        std::abs(sum + residuals[2 * texel] + residuals[2 * texel + 1] - white[texel].real()));
+    }
+    EXPECT_LE(largest, 2e-6) << K;
+    EXPECT_NEAR(MeanSquare(white), 1.0, 1e-12);
+    std::printf("K = %d: %.1f %% of the power in the bands\n", K, 100.0 * inside);
+    EXPECT_LT(inside, 0.12) << "the residuals hold most of it";
+  }
+}
+
+TEST(SubbandTiles, BandsOfThreeOrientationsAreLookedUp)
+{
+  // An odd number of components.
+  const SubbandParameters p = Pyramid(3, 3, 64, 0.125);
+  const SubbandTiles tiles = MakeSubbandTiles(p);
+  std::vector<float> bands(9);
+  SampleSubbands(tiles, TileLookup::CatmullRom, 5.0 / 64.0, 40.0 / 64.0, bands.data());
+  for (int c = 0; c < 9; ++c)
+  {
+    EXPECT_NEAR(bands[c], tiles.Texel(5, 40)[c], 1e-6) << c;
+  }
+}
+
 TEST(SubbandTiles, LayoutIsOrientationFastest)
 {
   const SubbandParameters p = Pyramid(6, 3, 64, 0.25);

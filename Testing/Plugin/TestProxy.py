@@ -73,7 +73,8 @@ for name, prop in panel.items():
 CONDITIONS = {
     "Density": ("Basis", "2", None), "ReferenceMagnitude": ("StrengthMode", "1", None),
     "StreakLength": ("LatticeWindow", "0", None), "Quality": ("LatticeWindow", "1", None),
-    "MinimumEigenvalue": ("LatticeWindow", "1", None), "Falloff": ("LatticeWindow", "1", None),
+    "MinimumEigenvalue": ("LatticeWindow", "1", None), "AnisotropicWeight": ("LatticeWindow", "1", None),
+    "Falloff": ("LatticeWindow", "1", None),
     "Lacunarity": ("Octaves", "1", "1"), "Gain": ("Octaves", "1", "1"), "TimeSteps": ("TimePeriod", "0", "1"),
 }
 shown_if = {}
@@ -113,7 +114,7 @@ for word in ("flow", "lic", "noise", "streak", "convolution"):
 
 # Each property through the proxy changes the noise.
 CHANGES = dict(
-    FeatureSize=0.5, StreakLength=3, EigenvalueSum=6.0, LatticeWindow=1,
+    FeatureSize=0.5, Model="Perlin Noise", MetricInProjection=0, StreakLength=3, EigenvalueSum=6.0, LatticeWindow=1,
     Strength=0.5, StrengthMode="Magnitude", Normalization="None", FollowCurvature=0, Basis="Value",
     Phase=0.3, Animate=1, Octaves=2, Turbulence=1, Fade="Cubic",
     Lattice="Jittered", GradientSet="Perlin", Period=[4, 4, 0], MaskThreshold=0.5, MaskUpperThreshold=1.0, Seed=7,
@@ -128,12 +129,46 @@ for name, value in CHANGES.items():
 paper = simple.SteerableNoise(Input=wake, Magnification=1, LatticeWindow=1)
 simple.UpdatePipeline(proxy=paper)
 values = pt.array(paper.GetClientSideObject().GetOutput())
-for name, value in dict(Quality=0, MinimumEigenvalue=0.2, Falloff="Radial").items():
+for name, value in dict(Quality=0, MinimumEigenvalue=0.2, AnisotropicWeight=0, Falloff="Radial").items():
     changed = simple.SteerableNoise(Input=wake, Magnification=1, LatticeWindow=1, **{name: value})
     simple.UpdatePipeline(proxy=changed)
     other = pt.array(changed.GetClientSideObject().GetOutput())
     pt.check(abs(other - values).max() > 1e-3, name + " matters with LatticeWindow")
     simple.Delete(changed)
+# A tensor as the metric itself: (0.8, 2.0) stays as it is.
+measured = simple.ProgrammableFilter(Input=simple.Wavelet(), Script="""
+import numpy
+output.ShallowCopy(inputs[0].VTKObject)
+output.PointData.append(numpy.tile([0.8, 2.0, 1.0, 0.0, 0.0, 0.0], (output.GetNumberOfPoints(), 1)), "G6")
+""")
+simple.UpdatePipeline(proxy=measured)
+for use, expected in (("Metric", 2.0), ("World Metric", 8.0)):
+    spots = simple.SteerableNoise(Input=measured, SelectInputVectors=["POINTS", "G6"], TensorUse=use,
+                                  FeatureSize=2, OutputMetric=1)
+    simple.UpdatePipeline(proxy=spots)
+    metric = spots.GetClientSideObject().GetOutput().GetPointData().GetArray("Metric").GetTuple(100)
+    pt.check(abs(metric[1] - expected) < 1e-9, "%s keeps the metric: %s" % (use, metric))
+    simple.Delete(spots)
+# Length, strength and sum by an array.
+slow = simple.Calculator(Input=wake, AttributeType="Cell Data", ResultArrayName="slow", Function="0.1")
+simple.UpdatePipeline(proxy=slow)
+plain = simple.SteerableNoise(Input=slow, Strength=0.1)
+varied = simple.SteerableNoise(Input=slow)
+pt.check(list(varied.StrengthArray) == ["POINTS", "None"], "no array by default: %s" % varied.StrengthArray)
+varied.StrengthArray = ["CELLS", "slow"]
+for proxy in (plain, varied):
+    simple.UpdatePipeline(proxy=proxy)
+one, other = (pt.array(proxy.GetClientSideObject().GetOutput()) for proxy in (plain, varied))
+pt.check(float(abs(one - other).max()) < 1e-5 and one.std() > 0.5, "StrengthArray is Strength")
+# Without a direction any data will do.
+ball = simple.Sphere()
+clouds = simple.SteerableNoise(Input=ball, Direction="None", FeatureSize=0.2, Octaves=2)
+with pt.Messages() as messages:
+    simple.UpdatePipeline(proxy=clouds)
+pt.check(messages.errors == 0, "no vectors are needed: " + messages.text)
+pt.check(pt.array(clouds.GetClientSideObject().GetOutput()).std() > 0.5, "clouds on a ball")
+simple.Delete(clouds)
+simple.Delete(ball)
 fine = simple.SteerableNoise(Input=wake, Magnification=2, OutputMetric=1, ResultArrayName="n")
 simple.UpdatePipeline(proxy=fine)
 data = fine.GetClientSideObject().GetOutput()

@@ -15,7 +15,7 @@ for proxy, name in ((simple.SubbandNoise, "vtkPolyDataSubbandNoise"), (simple.Su
     instance = proxy(Input=simple.Sphere()) if "Poly" in name else proxy()
     texts = {"Automatic": 0, "Least Squares": 0, "Fractal": 0, "Float": 0}
     for key in instance.ListProperties():
-        if key in ("Input", "SelectInputVectors"):
+        if key in ("Input", "SelectInputVectors", "WeightsArray", "WavelengthArray", "AnisotropyArray"):
             continue
         value = texts.get(str(getattr(instance, key)).strip("'"), getattr(instance, key))
         expected = getattr(fresh, "Get" + key)()
@@ -96,6 +96,19 @@ with pt.Messages() as messages:
 pt.check(messages.errors == 0 and "Extract their surface first" in messages.text, "mixed: " + messages.text)
 pt.check(mixed.PointData["SubbandNoise"] is not None, "the surface of a composite has noise")
 
+# Weights of one's own, and the parts that the panel shows.
+weighed = simple.SubbandNoise(Input=sphere, Wavelength=0.2, AntiAlias=0, OutputWeights=1)
+pt.check(weighed.WeightsArray[1] == "None", "no weights of one's own by default")
+again = simple.SubbandNoise(Input=weighed, Wavelength=0.2, AntiAlias=0, ResultArrayName="again")
+simple.UpdatePipeline(proxy=weighed)
+again.WeightsArray = ["POINTS", "SubbandWeights"]
+simple.UpdatePipeline(proxy=again)
+data = again.GetClientSideObject().GetOutputDataObject(0)
+difference = abs(pt.array(data, "again") - pt.array(data, "SubbandNoise")).max()
+pt.check(difference < 1e-5, "WeightsArray takes the filter's own: %g" % difference)
+whole = simple.SubbandNoiseTiles(TileSize=64, Scales=2, Orientations="3", Residuals=1)
+simple.UpdatePipeline(proxy=whole)
+pt.check(whole.PointData["Subbands"].GetNumberOfComponents() == 8, "3 x 2 bands and two residuals")
 tiles = simple.SubbandNoiseTiles(TileSize=64, Scales=2, Orientations="4")
 simple.UpdatePipeline(proxy=tiles)
 pt.check(tiles.PointData["Subbands"].GetNumberOfComponents() == 8, "tiles of 4 x 2 bands")

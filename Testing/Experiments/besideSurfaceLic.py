@@ -126,6 +126,9 @@ for width in [int(word) for word in sys.argv[1:]] or [1000, 1600]:
                 name, width, mode, *now, *(base / now)), flush=True)
 
 fine = plane(708)
-for name, mapper in (("Surface", vtkPolyDataMapper()), ("noise", noise(True))):
+straight = noise(True)
+straight.SetFollowCurvature(0)
+for name, mapper in (("Surface", vtkPolyDataMapper()), ("noise", noise(True)), ("noise without curvature", straight)):
     window, renderer = window_of(mapper, fine, 800)
-    print("first frame of %d quads as %s: %.2f s" % (fine.GetNumberOfCells(), name, seconds(window)[0]))
+    print("first frame of %d quads as %s: %.2f s, of the processor %.2f" % (
+        fine.GetNumberOfCells(), name, *seconds(window)))

@@ -203,7 +203,7 @@ def subband_tiles(*, orientations: int = 8, scales: int = 4, tile_size: int = 25
                   seed: int = 0) -> NDArray[np.float32]:
     """Periodic tiles of noise, one for each direction and octave of frequency.
 
-    orientations: 4, 6 or 8 directions. scales: 1 to 6 octaves, the finest first. tile_size: texels along a side, 16 to
+    orientations: 3, 4, 6 or 8 directions. scales: 1 to 6 octaves, the finest first. tile_size: texels along a side, 16 to
     2048. band_center: frequency of the finest octave in cycles per texel, above 0 up to 1/4; the coarsest must
     have 2 or more cycles in a tile. seed: 0 to 2**32 - 1.
 
@@ -213,13 +213,13 @@ def subband_tiles(*, orientations: int = 8, scales: int = 4, tile_size: int = 25
     section 2; the bits of vtkImageSubbandNoiseSource.
     """
     p = _kernel.SubbandParameters()
-    p.orientations = arguments.whole("orientations", orientations, 4, 8, "4, 6 or 8")
+    p.orientations = arguments.whole("orientations", orientations, 3, 8, "3, 4, 6 or 8")
     p.scales = arguments.whole("scales", scales, 1, 6, "a whole number from 1 to 6")
     p.tile_size = arguments.whole("tile_size", tile_size, 16, 2048, "a whole number from 16 to 2048")
     p.band_center = arguments.number("band_center", band_center, 0.0, 0.25, "above 0, up to 0.25", above=True)
     p.seed = arguments.whole("seed", seed, 0, 2**32 - 1, "a whole number from 0 to 2**32 - 1")
-    if p.orientations % 2:
-        raise ValueError(f"orientations is {orientations!r}; it must be 4, 6 or 8.")
+    if p.orientations in (5, 7):
+        raise ValueError(f"orientations is {orientations!r}; it must be 3, 4, 6 or 8.")
     coarsest = p.tile_size * p.band_center / 2 ** (p.scales - 1)
     if coarsest < 2.0:
         raise ValueError(f"scales is {scales}; the coarsest octave has {coarsest:g} cycles in a tile and needs 2. Take fewer "

@@ -32,6 +32,7 @@ using namespace nb::literals;
 namespace
 {
 using Output = nb::ndarray<float, nb::numpy, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Metrics = nb::ndarray<double, nb::numpy, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 constexpr std::size_t SamplesAtATime = 1u << 14;
 
 /// Samples without a direction, stagnant ones, and those that were too long.
@@ -135,7 +136,7 @@ Counts EvaluatePoints(const steerable::NoiseParameters& parameters, int dimensio
 /// N x N matrices of N-dimensional vectors, one after the other.
 template <int N>
 void WriteMetrics(const steerable::NoiseParameters& parameters, const ArrayTuples& vectors,
-  const ArrayTuples* normals, std::size_t begin, std::size_t end, float* out)
+  const ArrayTuples* normals, std::size_t begin, std::size_t end, double* out)
 {
   std::vector<float> vector(3 * (end - begin));
   std::vector<float> normal(normals ? vector.size() : 0);
@@ -159,19 +160,18 @@ void WriteMetrics(const steerable::NoiseParameters& parameters, const ArrayTuple
     {
       metric = steerable::MetricFromVector<N>(parameters, along);
     }
-    Eigen::Map<Eigen::Matrix<float, N, N>>(out + (begin + i) * N * N) =
-      metric.ToMatrix().template cast<float>();
+    Eigen::Map<Eigen::Matrix<double, N, N>>(out + (begin + i) * N * N) = metric.ToMatrix();
   }
 }
 
 void EvaluateMetrics(const steerable::NoiseParameters& parameters, int dimension,
-  const Components& vectors, const std::optional<Components>& normals, int threads, Output out)
+  const Components& vectors, const std::optional<Components>& normals, int threads, Metrics out)
 {
   parameters.Validate();
   const ArrayTuples tuples(vectors);
   const ArrayTuples normalTuples(normals ? *normals : vectors);
   const ArrayTuples* surface = normals ? &normalTuples : nullptr;
-  float* metrics = out.data();
+  double* metrics = out.data();
   const nb::gil_scoped_release noGil;
   ForEachPart(tuples.GetNumberOfTuples(), SamplesAtATime, threads,
     [&](std::size_t begin, std::size_t end)

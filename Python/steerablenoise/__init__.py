@@ -168,14 +168,14 @@ def noise_at(points: ArrayLike, vectors: ArrayLike, normals: ArrayLike | None = 
 
 def metric(vectors: ArrayLike, normals: ArrayLike | None = None, *, streak_length: float = 6.0, strength: float = 1.0,
            reference_magnitude: float | None = None, eigenvalue_sum: float = 3.2,
-           threads: int | None = None) -> NDArray[np.float32]:
+           threads: int | None = None) -> NDArray[np.float64]:
     """The metric tensors that steer the noise, before curvature.
 
     vectors: shape (..., 2) or (..., 3). Where a vector is 0, NaN or infinite the metric is the unit matrix.
     normals: the same shape with 3 components, of any length: the metrics of surfaces.
     streak_length, strength, reference_magnitude, eigenvalue_sum, threads: as for `noise`.
 
-    Returns float32 of shape (..., 2, 2) or (..., 3, 3) in units of 1 / feature_size**2: symmetric, positive
+    Returns float64 of shape (..., 2, 2) or (..., 3, 3) in units of 1 / feature_size**2: symmetric, positive
     definite, smallest eigenvalue 1 / streak_length**2 along the vector. Raises ValueError as `noise` does.
     Source: Rice 2025, supplementary, section 1.
     """
@@ -192,7 +192,7 @@ def metric(vectors: ArrayLike, normals: ArrayLike | None = None, *, streak_lengt
         parts = arguments.row_components(normals.reshape(-1, 3))
     settings = arguments.Settings(streak_length=streak_length, strength=strength, eigenvalue_sum=eigenvalue_sum,
                                   reference_magnitude=reference_magnitude, threads=threads)
-    out = np.empty((*vectors.shape, axes), np.float32)
+    out = np.empty((*vectors.shape, axes), np.float64)
     if out.size:
         _kernel.metrics(settings.parameters, axes, arguments.row_components(vectors.reshape(-1, axes)), parts,
                         settings.threads, out.reshape(-1))

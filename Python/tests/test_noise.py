@@ -147,8 +147,8 @@ def test_metric_is_short_along_the_vector():
     angle = np.linspace(0.0, 3.0, 24).reshape(2, 3, 4)
     vectors = 5.0 * np.stack((np.cos(angle), np.sin(angle)), axis=-1)
     g = metric(vectors, streak_length=4.0, eigenvalue_sum=3.0)
-    assert g.shape == (2, 3, 4, 2, 2) and g.dtype == np.float32
-    values, axes = np.linalg.eigh(g.astype(np.float64))
+    assert g.shape == (2, 3, 4, 2, 2) and g.dtype == np.float64
+    values, axes = np.linalg.eigh(g)
     np.testing.assert_allclose(values[..., 0], 1.0 / 16.0, rtol=1e-5)
     np.testing.assert_allclose(values[..., 1], 3.0 - 1.0 / 16.0 - 1e-4, rtol=1e-5)
     np.testing.assert_allclose(np.abs((axes[..., 0] * vectors).sum(-1)), 5.0, rtol=1e-5)

@@ -160,7 +160,9 @@ void WriteMetrics(const steerable::NoiseParameters& parameters, const ArrayTuple
     {
       metric = steerable::MetricFromVector<N>(parameters, along);
     }
-    Eigen::Map<Eigen::Matrix<double, N, N>>(out + (begin + i) * N * N) = metric.ToMatrix();
+    // One half twice: the other one is rounded differently.
+    Eigen::Map<Eigen::Matrix<double, N, N>>(out + (begin + i) * N * N) =
+      metric.ToMatrix().template selfadjointView<Eigen::Upper>();
   }
 }
 

@@ -158,7 +158,7 @@ void WriteMetrics(const steerable::NoiseParameters& parameters, const ArrayTuple
     }
     else
     {
-      metric = steerable::MetricFromVector<N>(parameters, along);
+      metric = steerable::MetricFromVector<N>(parameters, along, along.norm()); // as the filter says
     }
     // One half twice: the other one is rounded differently.
     Eigen::Map<Eigen::Matrix<double, N, N>>(out + (begin + i) * N * N) =

@@ -524,7 +524,7 @@ struct Evaluator
     const double scale = repeats * this->GetWavelength(point);
     counts.Clamped = this->AddPoint(plane, point - first, repeats * surface.GetTexture(point),
       metrics.Metric * (scale * scale),
-      metrics.Isotropic * (repeats * repeats * metrics.SquaredSpacing), 1.0, counts, first, 0);
+      metrics.Footprint * (repeats * repeats), 1.0, counts, first, 0);
   }
 
   void AddProjected(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
@@ -556,8 +556,7 @@ struct Evaluator
         const Eigen::Vector2d texture(place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]);
         const bool clamped = this->AddPoint(planes[axis], point - first, texture,
           steerable::SurfaceMetric(gradients, feature),
-          gradients.transpose() * gradients * features.SquaredSpacing, blend[axis], counts, first,
-          axis);
+          gradients.transpose() * features.Spacing * gradients, blend[axis], counts, first, axis);
         counts.Clamped = counts.Clamped || clamped;
       }
     }

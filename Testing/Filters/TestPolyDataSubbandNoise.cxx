@@ -5,6 +5,7 @@
 #include "SurfaceMetric.h"
 
 #include "vtkCellArray.h"
+#include "vtkPoints.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
@@ -1102,6 +1103,72 @@ TEST(PolyDataSubbandNoise, AntiAliasFadesWhatTheMeshCannotCarry)
   EXPECT_LT(deviation(2.0 / 64, true), 0.05);
   EXPECT_NEAR(deviation(8.0 / 64, true), 0.73, 0.12);
   EXPECT_GT(deviation(2.0 / 64, false), 0.8);
+}
+
+TEST(PolyDataSubbandNoise, AntiAliasKnowsTheDirectionOfTheMesh)
+{
+  // Points 8 times as far apart along y as along x: only what varies along y fades.
+  const int nx = 161;
+  const int ny = 21;
+  vtkNew<vtkPolyData> mesh;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkFloatArray> uv;
+  uv->SetName("uv");
+  uv->SetNumberOfComponents(2);
+  vtkNew<vtkCellArray> cells;
+  for (int y = 0; y < ny; ++y)
+  {
+    for (int x = 0; x < nx; ++x)
+    {
+      const double u = x / (nx - 1.0);
+      const double v = y / (ny - 1.0);
+      points->InsertNextPoint(u, v, 0.0);
+      uv->InsertNextTuple2(u, v);
+      if (x + 1 < nx && y + 1 < ny)
+      {
+        const vtkIdType corner = y * nx + x;
+        const vtkIdType quad[4] = { corner, corner + 1, corner + nx + 1, corner + nx };
+        cells->InsertNextCell(4, quad);
+      }
+    }
+  }
+  mesh->SetPoints(points);
+  mesh->SetPolys(cells);
+  mesh->GetPointData()->SetTCoords(uv);
+  for (const bool texture : { true, false })
+  {
+    const auto weights = [&](bool antialias)
+    {
+      auto noise = AddNoise(mesh, 0.15,
+        [&](vtkPolyDataSubbandNoise* filter)
+        {
+          filter->SetAntiAlias(antialias);
+          filter->OutputWeightsOn();
+          filter->SetMethod(vtkPolyDataSubbandNoise::HEURISTIC);
+          filter->SetParameterization(texture ? vtkPolyDataSubbandNoise::TEXTURE_COORDINATES
+                                              : vtkPolyDataSubbandNoise::TRIPLANAR);
+        });
+      return vtkSmartPointer<vtkDataArray>(noise->GetPointData()->GetArray("SubbandWeights"));
+    };
+    auto with = weights(true);
+    auto without = weights(false);
+    // The bands of direction 0 and 4 of 8: frequencies along x and along y; of three planes the last looks along z.
+    const int bands = with->GetNumberOfComponents() / (texture ? 1 : 3);
+    const int first = texture ? 0 : 2 * bands;
+    double kept[2] = { 0.0, 0.0 };
+    double all[2] = { 0.0, 0.0 };
+    const vtkIdType middle = ny / 2 * nx + nx / 2;
+    for (int c = 0; c < bands; ++c)
+    {
+      if (c % 8 == 0 || c % 8 == 4)
+      {
+        kept[c % 8 / 4] += std::abs(with->GetComponent(middle, first + c));
+        all[c % 8 / 4] += std::abs(without->GetComponent(middle, first + c));
+      }
+    }
+    EXPECT_GT(kept[0] / all[0], 0.9) << texture;
+    EXPECT_LT(kept[1] / all[1], 0.2) << texture;
+  }
 }
 
 TEST(PolyDataSubbandNoise, CoarseMeshIsReportedWithNumbers)

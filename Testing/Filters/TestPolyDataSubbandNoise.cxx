@@ -883,6 +883,67 @@ TEST(PolyDataSubbandNoise, TakesWeightsOfTheUsersOwn)
   EXPECT_NE(messages->Text.find("8 orientations"), std::string::npos) << messages->Text;
 }
 
+TEST(PolyDataSubbandNoise, TakesFactorsOfOctavesAndOrientations)
+{
+  for (const bool texture : { true, false })
+  {
+    auto mesh = Sheet(129, Flat, CellKind::Triangles, 1.0, texture);
+    const auto noise = [&](int octaves, double persistence, const char* factors)
+    {
+      return Noise(mesh, 0.2,
+        [&](vtkPolyDataSubbandNoise* filter)
+        {
+          filter->SetOctaves(octaves);
+          filter->SetPersistence(persistence);
+          filter->SetAntiAlias(false);
+          filter->SetInputArrayToProcess(vtkPolyDataSubbandNoise::FACTORS_ARRAY, 0, 0,
+            vtkDataObject::FIELD_ASSOCIATION_POINTS, factors);
+        });
+    };
+    const auto add = [&](const char* name, const std::function<double(int octave, int orientation)>& f)
+    {
+      vtkNew<vtkDoubleArray> array;
+      array->SetName(name);
+      array->SetNumberOfComponents(16);
+      array->SetNumberOfTuples(mesh->GetNumberOfPoints());
+      for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+      {
+        for (int c = 0; c < 16; ++c)
+        {
+          array->SetComponent(i, c, f(c / 8, c % 8));
+        }
+      }
+      mesh->GetPointData()->AddArray(array);
+    };
+    add("half", [](int octave, int) { return octave == 0 ? 1.0 : 0.5; });
+    add("left", [](int, int orientation) { return orientation % 2 ? 0.0 : 1.0; });
+    add("right", [](int, int orientation) { return orientation % 2 ? 1.0 : 0.0; });
+    // A factor of an octave is its amplitude, and orientations add up.
+    EXPECT_LE(LargestDifference(noise(2, 0.8, "half"), noise(2, 0.4, "None")), 1e-5) << texture;
+    const std::vector<float> left = noise(2, 0.7, "left");
+    std::vector<float> sum = noise(2, 0.7, "right");
+    EXPECT_GT(LargestDifference(left, sum), 0.5);
+    for (std::size_t i = 0; i < sum.size(); ++i)
+    {
+      sum[i] += left[i];
+    }
+    EXPECT_LE(LargestDifference(sum, noise(2, 0.7, "None")), 1e-5) << texture;
+  }
+  // Eight components too few.
+  auto mesh = FlatSheet(129);
+  AddValues(mesh, "short", 8, [](vtkIdType) { return 1.0; });
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(mesh);
+  filter->SetWavelength(0.2);
+  filter->SetOctaves(2);
+  filter->SetInputArrayToProcess(
+    vtkPolyDataSubbandNoise::FACTORS_ARRAY, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "short");
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("16 components"), std::string::npos) << messages->Text;
+}
+
 TEST(PolyDataSubbandNoise, RadialTripleCountsForTheHeuristic)
 {
   auto mesh = FlatSheet();

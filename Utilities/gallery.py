@@ -174,6 +174,10 @@ options("gradient_set", [("GradientSet %s" % kind, dict(GradientSet=kind)) for k
 options("eigenvalue_sum", [("EigenvalueSum %g" % trace, dict(EigenvalueSum=trace)) for trace in (2, 3.2, 6, 16)])
 options("minimum_eigenvalue", [("LatticeWindow on, MinimumEigenvalue %g" % least, dict(PAPER, MinimumEigenvalue=least)) for least in (1, 0.5, 0.2, 0.05)])
 options("lattice_window", [("LatticeWindow off", {}), ("LatticeWindow on, Quality 4, EigenvalueSum 4", PAPER)])
+# Rice's Fig. 2, as the sums come.
+PARTS = dict(PAPER, Quality=0, Normalization="None", FollowCurvature=0)
+options("paper_parts", [("a: Model Perlin Noise", dict(Model="Perlin Noise")), ("b: AnisotropicWeight off", dict(PARTS, AnisotropicWeight=0)),
+    ("c: both parts, Quality 0", PARTS), ("MetricInProjection off", dict(PARTS, MetricInProjection=0))], low=-0.9, high=0.9)
 # Strength 0, so that the repetition shows: 8 cells of 0.2 diameters.
 options("period", [("Period 0 0 0, Strength 0", dict(Strength=0.0, FeatureSize=0.2)),
     ("Period 8 8 0, Strength 0", dict(Strength=0.0, FeatureSize=0.2, Period=[8, 8, 0]))])

@@ -78,6 +78,29 @@ Eigen::Vector3d TriplanarBlend(const Eigen::Vector3d& normal)
   return weights.normalized();
 }
 
+Eigen::Matrix3d SpacingForm(const std::array<Eigen::Vector3d, 3>& corners)
+{
+  std::array<Eigen::Vector3d, 3> sides = { corners[1] - corners[0], corners[2] - corners[1],
+    corners[0] - corners[2] };
+  std::sort(sides.begin(), sides.end(),
+    [](const Eigen::Vector3d& a, const Eigen::Vector3d& b)
+    { return a.squaredNorm() < b.squaredNorm(); });
+  const double lengths = sides[0].norm() * sides[1].norm();
+  // Of the angle opposite to the longest side, from 1/2 at 60 degrees to 0 at 90 and beyond.
+  const double cosine =
+    lengths > 0.0 ? std::min(0.5, std::max(0.0, std::abs(sides[0].dot(sides[1])) / lengths)) : 0.0;
+  const bool obtuse =
+    sides[2].squaredNorm() >= sides[0].squaredNorm() + sides[1].squaredNorm();
+  const double longest = obtuse ? 0.0 : cosine;
+  const Eigen::Matrix3d form =
+    (1.0 - longest) * (sides[0] * sides[0].transpose() + sides[1] * sides[1].transpose()) +
+    longest * sides[2] * sides[2].transpose();
+  const double wanted =
+    0.5 * (sides[0].squaredNorm() + sides[1].squaredNorm() + sides[2].squaredNorm());
+  const double trace = form.trace();
+  return trace > 0.0 ? Eigen::Matrix3d(form * (wanted / trace)) : Eigen::Matrix3d::Zero();
+}
+
 Eigen::Matrix3d IsotropicFeature(double wavelength)
 {
   return wavelength * wavelength * Eigen::Matrix3d::Identity();

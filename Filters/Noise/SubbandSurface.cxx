@@ -244,10 +244,7 @@ void SubbandSurface::MeasureTriangles(bool wrapSeams)
           this->Points[ids[2]] };
         const double area = 0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm();
         triangle.Area = std::isfinite(area) ? area : 0.0;
-        // Half a square of side h has edges of 4 h^2 in all.
-        triangle.SquaredSpacing = 0.25 *
-          ((corners[1] - corners[0]).squaredNorm() + (corners[2] - corners[1]).squaredNorm() +
-            (corners[0] - corners[2]).squaredNorm());
+        triangle.Spacing = steerable::SpacingForm(corners);
         if (!this->IsTextured())
         {
           continue;
@@ -498,7 +495,8 @@ bool SubbandSurface::ComputeTextured(
         total += triangle.Area;
         metrics.Metric += triangle.Area * steered;
         metrics.Isotropic += triangle.Area * isotropic;
-        metrics.SquaredSpacing += triangle.Area * triangle.SquaredSpacing;
+        metrics.Footprint +=
+          triangle.Area * (gradients.transpose() * triangle.Spacing * gradients).eval();
       }
       copy = this->NextCopy[copy];
     } while (copy != point);
@@ -506,7 +504,7 @@ bool SubbandSurface::ComputeTextured(
     {
       metrics.Metric /= total;
       metrics.Isotropic /= total;
-      metrics.SquaredSpacing /= total;
+      metrics.Footprint /= total;
       return metrics.Metric.allFinite() && this->Texture[point].allFinite();
     }
   }
@@ -522,7 +520,7 @@ bool SubbandSurface::ComputeProjected(
     return false;
   }
   features.Feature = Eigen::Matrix3d::Zero();
-  features.SquaredSpacing = 0.0;
+  features.Spacing.setZero();
   features.Directed = false;
   const auto feature = [&](vtkIdType tuple) -> Eigen::Matrix3d
   {
@@ -537,7 +535,7 @@ bool SubbandSurface::ComputeProjected(
     if (triangle.Area > 0.0)
     {
       total += triangle.Area;
-      features.SquaredSpacing += triangle.Area * triangle.SquaredSpacing;
+      features.Spacing += triangle.Area * triangle.Spacing;
       if (vectors.Values && vectors.Cells)
       {
         features.Feature += triangle.Area * feature(triangle.Cell);
@@ -548,7 +546,7 @@ bool SubbandSurface::ComputeProjected(
   {
     return false;
   }
-  features.SquaredSpacing /= total;
+  features.Spacing /= total;
   if (!vectors.Values)
   {
     features.Feature.setIdentity();

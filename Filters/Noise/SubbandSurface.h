@@ -103,7 +103,7 @@ public:
   {
     Eigen::Matrix2d Metric = Eigen::Matrix2d::Zero();    ///< Steered.
     Eigen::Matrix2d Isotropic = Eigen::Matrix2d::Zero(); ///< Of the texture alone.
-    double SquaredSpacing = 0.0;                         ///< Of points.
+    Eigen::Matrix2d Footprint = Eigen::Matrix2d::Zero(); ///< J J^T of the points' spacing.
     bool Directed = false; ///< Some vector had a direction in the surface.
   };
 
@@ -116,7 +116,7 @@ public:
   {
     Eigen::Vector3d Normal;
     Eigen::Matrix3d Feature; ///< B for wavelength one.
-    double SquaredSpacing;
+    Eigen::Matrix3d Spacing; ///< SpacingForm.
     bool Directed = false;
   };
   bool ComputeProjected(vtkIdType point, const SteeringVectors& vectors, double anisotropy,
@@ -129,7 +129,7 @@ private:
     vtkIdType Cell;
     bool Ghost;
     double Area = 0.0; ///< 0 where there is none.
-    double SquaredSpacing = 0.0;
+    Eigen::Matrix3d Spacing = Eigen::Matrix3d::Zero();
   };
   struct Mapping
   {

@@ -383,6 +383,8 @@ struct Evaluator
   float* Distortion = nullptr;
   /// Weights of the user's own, one tuple a point of all planes' bands; null: those of the metric.
   vtkDataArray* OwnWeights = nullptr;
+  /// Of each octave and orientation, orientation fastest; null: all 1.
+  vtkDataArray* Factors = nullptr;
   /// Wavelength and Anisotropy of each point; null: those of all, the latter what SteeredFeature takes.
   vtkDataArray* WavelengthArray = nullptr;
   vtkDataArray* AnisotropyArray = nullptr;
@@ -524,7 +526,7 @@ struct Evaluator
     const double scale = repeats * this->GetWavelength(point);
     counts.Clamped = this->AddPoint(plane, point - first, repeats * surface.GetTexture(point),
       metrics.Metric * (scale * scale),
-      metrics.Isotropic * (repeats * repeats * metrics.SquaredSpacing), 1.0, counts, first, 0);
+      metrics.Footprint * (repeats * repeats), 1.0, counts, first, 0);
   }
 
   void AddProjected(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
@@ -556,8 +558,7 @@ struct Evaluator
         const Eigen::Vector2d texture(place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]);
         const bool clamped = this->AddPoint(planes[axis], point - first, texture,
           steerable::SurfaceMetric(gradients, feature),
-          gradients.transpose() * gradients * features.SquaredSpacing, blend[axis], counts, first,
-          axis);
+          gradients.transpose() * features.Spacing * gradients, blend[axis], counts, first, axis);
         counts.Clamped = counts.Clamped || clamped;
       }
     }
@@ -603,6 +604,15 @@ struct Evaluator
           if (this->AntiAlias)
           {
             this->Weights.LimitVariance(plane.Blends[n] * plane.Blends[n], beta);
+          }
+          if (this->Factors)
+          {
+            const int orientations = this->Lay.Pyramid.Orientations;
+            for (int c = 0; c < components; ++c)
+            {
+              beta[c] *= this->Factors->GetComponent(
+                first + plane.Points[n], octave * orientations + c % orientations);
+            }
           }
           std::copy(beta, beta + components, weights.begin() + n * components);
         }
@@ -1022,6 +1032,7 @@ int vtkPolyDataSubbandNoise::RequestData(
 
   PointCounts counts;
   const std::string ownWeights = this->GetArrayName(WEIGHTS_ARRAY);
+  const std::string factorsName = this->GetArrayName(FACTORS_ARRAY);
   double textureRepeats = 1.0;
   try
   {
@@ -1101,6 +1112,18 @@ int vtkPolyDataSubbandNoise::RequestData(
             (textured ? "" : ", 3 planes") + "). OutputWeights adds such an array to begin with.");
         }
         evaluator.OwnWeights = array;
+      }
+      if (!factorsName.empty())
+      {
+        const int needed = this->Octaves * layout.Pyramid.Orientations;
+        vtkDataArray* array = pointData->GetArray(factorsName.c_str());
+        if (!array || array->GetNumberOfComponents() != needed ||
+          array->GetNumberOfTuples() != points)
+        {
+          throw std::invalid_argument("Factors '" + factorsName + "' are not on the points with " +
+            std::to_string(needed) + " components, one for each octave and orientation.");
+        }
+        evaluator.Factors = array;
       }
       if (this->OutputWeights)
       {

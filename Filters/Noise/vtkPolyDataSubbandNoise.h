@@ -66,7 +66,8 @@ public:
     STEERING_ARRAY = 0,
     WEIGHTS_ARRAY = 1,
     WAVELENGTH_ARRAY = 2,
-    ANISOTROPY_ARRAY = 3
+    ANISOTROPY_ARRAY = 3,
+    FACTORS_ARRAY = 4
   };
 
   /**
@@ -76,6 +77,9 @@ public:
    * SetInputArrayToProcess(1, ...) chooses weights of the user's own, on points: an array as OutputWeights adds it, with
    * a component for each band, which takes the place of the weights of every octave. They are used as they are, and
    * AntiAlias, if it is on, fades them. Without a name, or with "None", weights come from the metric.
+   *
+   * SetInputArrayToProcess(4, ...) chooses factors by which the weights of each octave and orientation are multiplied
+   * (the paper's f_k for linear functions): Octaves times Orientations components, orientation fastest, on points.
    *
    * SetInputArrayToProcess(2, ...) and (3, ...) choose arrays on points that Wavelength and Anisotropy come from, point by
    * point: values of one component, lengths of 2 or 3, so the steering vectors themselves may say how long features are.

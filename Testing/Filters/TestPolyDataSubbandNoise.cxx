@@ -5,6 +5,7 @@
 #include "SurfaceMetric.h"
 
 #include "vtkCellArray.h"
+#include "vtkPoints.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
@@ -882,6 +883,67 @@ TEST(PolyDataSubbandNoise, TakesWeightsOfTheUsersOwn)
   EXPECT_NE(messages->Text.find("8 orientations"), std::string::npos) << messages->Text;
 }
 
+TEST(PolyDataSubbandNoise, TakesFactorsOfOctavesAndOrientations)
+{
+  for (const bool texture : { true, false })
+  {
+    auto mesh = Sheet(129, Flat, CellKind::Triangles, 1.0, texture);
+    const auto noise = [&](int octaves, double persistence, const char* factors)
+    {
+      return Noise(mesh, 0.2,
+        [&](vtkPolyDataSubbandNoise* filter)
+        {
+          filter->SetOctaves(octaves);
+          filter->SetPersistence(persistence);
+          filter->SetAntiAlias(false);
+          filter->SetInputArrayToProcess(vtkPolyDataSubbandNoise::FACTORS_ARRAY, 0, 0,
+            vtkDataObject::FIELD_ASSOCIATION_POINTS, factors);
+        });
+    };
+    const auto add = [&](const char* name, const std::function<double(int octave, int orientation)>& f)
+    {
+      vtkNew<vtkDoubleArray> array;
+      array->SetName(name);
+      array->SetNumberOfComponents(16);
+      array->SetNumberOfTuples(mesh->GetNumberOfPoints());
+      for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
+      {
+        for (int c = 0; c < 16; ++c)
+        {
+          array->SetComponent(i, c, f(c / 8, c % 8));
+        }
+      }
+      mesh->GetPointData()->AddArray(array);
+    };
+    add("half", [](int octave, int) { return octave == 0 ? 1.0 : 0.5; });
+    add("left", [](int, int orientation) { return orientation % 2 ? 0.0 : 1.0; });
+    add("right", [](int, int orientation) { return orientation % 2 ? 1.0 : 0.0; });
+    // A factor of an octave is its amplitude, and orientations add up.
+    EXPECT_LE(LargestDifference(noise(2, 0.8, "half"), noise(2, 0.4, "None")), 1e-5) << texture;
+    const std::vector<float> left = noise(2, 0.7, "left");
+    std::vector<float> sum = noise(2, 0.7, "right");
+    EXPECT_GT(LargestDifference(left, sum), 0.5);
+    for (std::size_t i = 0; i < sum.size(); ++i)
+    {
+      sum[i] += left[i];
+    }
+    EXPECT_LE(LargestDifference(sum, noise(2, 0.7, "None")), 1e-5) << texture;
+  }
+  // Eight components too few.
+  auto mesh = FlatSheet(129);
+  AddValues(mesh, "short", 8, [](vtkIdType) { return 1.0; });
+  vtkNew<vtkPolyDataSubbandNoise> filter;
+  auto messages = Listen(filter);
+  filter->SetInputData(mesh);
+  filter->SetWavelength(0.2);
+  filter->SetOctaves(2);
+  filter->SetInputArrayToProcess(
+    vtkPolyDataSubbandNoise::FACTORS_ARRAY, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "short");
+  filter->Update();
+  EXPECT_EQ(messages->Errors, 1);
+  EXPECT_NE(messages->Text.find("16 components"), std::string::npos) << messages->Text;
+}
+
 TEST(PolyDataSubbandNoise, RadialTripleCountsForTheHeuristic)
 {
   auto mesh = FlatSheet();
@@ -1102,6 +1164,72 @@ TEST(PolyDataSubbandNoise, AntiAliasFadesWhatTheMeshCannotCarry)
   EXPECT_LT(deviation(2.0 / 64, true), 0.05);
   EXPECT_NEAR(deviation(8.0 / 64, true), 0.73, 0.12);
   EXPECT_GT(deviation(2.0 / 64, false), 0.8);
+}
+
+TEST(PolyDataSubbandNoise, AntiAliasKnowsTheDirectionOfTheMesh)
+{
+  // Points 8 times as far apart along y as along x: only what varies along y fades.
+  const int nx = 161;
+  const int ny = 21;
+  vtkNew<vtkPolyData> mesh;
+  vtkNew<vtkPoints> points;
+  vtkNew<vtkFloatArray> uv;
+  uv->SetName("uv");
+  uv->SetNumberOfComponents(2);
+  vtkNew<vtkCellArray> cells;
+  for (int y = 0; y < ny; ++y)
+  {
+    for (int x = 0; x < nx; ++x)
+    {
+      const double u = x / (nx - 1.0);
+      const double v = y / (ny - 1.0);
+      points->InsertNextPoint(u, v, 0.0);
+      uv->InsertNextTuple2(u, v);
+      if (x + 1 < nx && y + 1 < ny)
+      {
+        const vtkIdType corner = y * nx + x;
+        const vtkIdType quad[4] = { corner, corner + 1, corner + nx + 1, corner + nx };
+        cells->InsertNextCell(4, quad);
+      }
+    }
+  }
+  mesh->SetPoints(points);
+  mesh->SetPolys(cells);
+  mesh->GetPointData()->SetTCoords(uv);
+  for (const bool texture : { true, false })
+  {
+    const auto weights = [&](bool antialias)
+    {
+      auto noise = AddNoise(mesh, 0.15,
+        [&](vtkPolyDataSubbandNoise* filter)
+        {
+          filter->SetAntiAlias(antialias);
+          filter->OutputWeightsOn();
+          filter->SetMethod(vtkPolyDataSubbandNoise::HEURISTIC);
+          filter->SetParameterization(texture ? vtkPolyDataSubbandNoise::TEXTURE_COORDINATES
+                                              : vtkPolyDataSubbandNoise::TRIPLANAR);
+        });
+      return vtkSmartPointer<vtkDataArray>(noise->GetPointData()->GetArray("SubbandWeights"));
+    };
+    auto with = weights(true);
+    auto without = weights(false);
+    // The bands of direction 0 and 4 of 8: frequencies along x and along y; of three planes the last looks along z.
+    const int bands = with->GetNumberOfComponents() / (texture ? 1 : 3);
+    const int first = texture ? 0 : 2 * bands;
+    double kept[2] = { 0.0, 0.0 };
+    double all[2] = { 0.0, 0.0 };
+    const vtkIdType middle = ny / 2 * nx + nx / 2;
+    for (int c = 0; c < bands; ++c)
+    {
+      if (c % 8 == 0 || c % 8 == 4)
+      {
+        kept[c % 8 / 4] += std::abs(with->GetComponent(middle, first + c));
+        all[c % 8 / 4] += std::abs(without->GetComponent(middle, first + c));
+      }
+    }
+    EXPECT_GT(kept[0] / all[0], 0.9) << texture;
+    EXPECT_LT(kept[1] / all[1], 0.2) << texture;
+  }
 }
 
 TEST(PolyDataSubbandNoise, CoarseMeshIsReportedWithNumbers)

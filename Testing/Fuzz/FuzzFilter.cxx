@@ -207,6 +207,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   filter->SetMagnification(bytes.TakeBelow(4));
   filter->SetMaskThreshold(bytes.TakeNumber());
   filter->SetOutputMetric(bytes.TakeBool());
+  filter->SetModel(bytes.TakeBelow(8) == 0);
+  filter->SetDirection(bytes.TakeBelow(8) == 0);
+  filter->SetTensorUse(bytes.TakeBelow(3));
+  filter->SetMetricInProjection(bytes.TakeBelow(4) != 0);
   if (bytes.TakeBool())
   {
     filter->SetInputArrayToProcess(0, 0, 0, bytes.TakeBelow(2), "v");

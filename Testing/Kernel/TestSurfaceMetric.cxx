@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -133,6 +134,33 @@ TEST(SurfaceMetric, TriplanarBlendKeepsVarianceAndAvoidsGrazingProjections)
       }
     }
   }
+}
+
+TEST(SurfaceMetric, SpacingFormIsThatOfTheLattice)
+{
+  using Corners = std::array<Eigen::Vector3d, 3>;
+  const Eigen::Matrix3d turn =
+    Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
+  // Half a rectangle: its sides.
+  const Corners half = { turn * Eigen::Vector3d(0.0, 0.0, 0.0), turn * Eigen::Vector3d(3.0, 0.0, 0.0),
+    turn * Eigen::Vector3d(0.0, 0.5, 0.0) };
+  Eigen::Matrix3d expected = turn * Eigen::Vector3d(9.0, 0.25, 0.0).asDiagonal() * turn.transpose();
+  EXPECT_TRUE(SpacingForm(half).isApprox(expected, 1e-12)) << SpacingForm(half);
+  // The order of the corners does not matter.
+  EXPECT_TRUE(SpacingForm({ half[2], half[0], half[1] }).isApprox(expected, 1e-12));
+  // Equilateral: the same in its plane.
+  const Corners even = { turn * Eigen::Vector3d(0.0, 0.0, 0.0), turn * Eigen::Vector3d(2.0, 0.0, 0.0),
+    turn * Eigen::Vector3d(1.0, std::sqrt(3.0), 0.0) };
+  expected = turn * Eigen::Vector3d(3.0, 3.0, 0.0).asDiagonal() * turn.transpose();
+  EXPECT_TRUE(SpacingForm(even).isApprox(expected, 1e-12)) << SpacingForm(even);
+  // Obtuse: the two short sides.
+  const Corners sheared = { Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(1.0, 0.0, 0.0),
+    Eigen::Vector3d(2.0, 1.0, 0.0) };
+  Eigen::Matrix3d sides = Eigen::Matrix3d::Zero();
+  sides.topLeftCorner<2, 2>() << 2.0, 1.0, 1.0, 1.0; // (1, 0) and (1, 1)
+  sides *= 0.5 * (1.0 + 2.0 + 5.0) / 3.0;
+  EXPECT_TRUE(SpacingForm(sheared).isApprox(sides, 1e-12)) << SpacingForm(sheared);
+  EXPECT_TRUE(SpacingForm({ half[0], half[0], half[0] }).isZero(0.0));
 }
 
 TEST(SurfaceMetric, SteeredFeature)

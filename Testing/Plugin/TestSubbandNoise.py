@@ -15,7 +15,7 @@ for proxy, name in ((simple.SubbandNoise, "vtkPolyDataSubbandNoise"), (simple.Su
     instance = proxy(Input=simple.Sphere()) if "Poly" in name else proxy()
     texts = {"Automatic": 0, "Least Squares": 0, "Fractal": 0, "Float": 0}
     for key in instance.ListProperties():
-        if key in ("Input", "SelectInputVectors", "WeightsArray", "WavelengthArray", "AnisotropyArray"):
+        if key in ("Input", "SelectInputVectors", "WeightsArray", "FactorsArray", "WavelengthArray", "AnisotropyArray"):
             continue
         value = texts.get(str(getattr(instance, key)).strip("'"), getattr(instance, key))
         expected = getattr(fresh, "Get" + key)()

@@ -102,7 +102,7 @@ for name, source, preparation in sources():
         vectors = ["POINTS", "Momentum"]
     for curvature in (0, 1):
         noise = simple.SteerableNoise(
-            Input=source, SelectInputVectors=vectors, FollowCurvature=curvature,
+            Input=source, SelectInputVectors=vectors, FollowCurvature=curvature, Magnification=1,
             StrengthMode="Magnitude" if name == "fill" else "Constant")
         simple.UpdatePipeline(proxy=noise)
         save("%s_%d" % (name, curvature), noise)

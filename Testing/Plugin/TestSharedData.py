@@ -84,14 +84,15 @@ def picture(noise, association, title, direction, up, representation="Surface"):
 
 def run(title, source, array, warnings="", vectors=None, blank=None, **properties):
     """
-    Runs the filter with its defaults and checks what every dataset has to give. `array` is the
+    Runs the filter with the defaults of the class and checks what every dataset has to give. `array` is the
     (association, name) that has to be taken, `warnings` a part of the one warning that is expected,
     `blank` how many vectors are zero and have to be blank (None: not counted).
     """
     simple.UpdatePipeline(proxy=source)
     if vectors:
         properties["SelectInputVectors"] = vectors
-    noise = simple.SteerableNoise(Input=source, **properties)
+    # Images as they are; TestFirstLook.py has the finer ones.
+    noise = simple.SteerableNoise(Input=source, **dict(dict(Magnification=1), **properties))
     chosen = list(noise.SelectInputVectors)
     pt.check(chosen == list(array), "%s: takes %s, got %s" % (title, array, chosen))
     logged = os.path.getsize(LOG)

@@ -66,8 +66,9 @@ struct AxialMetric
 };
 
 /**
- * Parameters with the StreakLength, Strength and EigenvalueSum of one sample, kept within their ranges; what is not
- * finite is that of all samples. Along with them goes the sum's limit of 4 where weights divide.
+ * Parameters with the StreakLength, Strength and EigenvalueSum of one sample, kept within their
+ * ranges; what is not finite is that of all samples. Along with them goes the sum's limit of 4
+ * where weights divide.
  */
 NoiseParameters WithShape(const NoiseParameters& parameters, const float* shape);
 
@@ -123,8 +124,8 @@ AxialMetric<N> MetricFromTensor(
   const NoiseParameters& parameters, const Matrix<N>& inPlane, double norm);
 
 /**
- * Eigenvalues between which a metric of the user's own is taken as it is. The least, 1/400, reaches as far as the
- * longest streak; with LatticeWindow, which ends surflets anyway, 1/1000.
+ * Eigenvalues between which a metric of the user's own is taken as it is. The least, 1/400, reaches
+ * as far as the longest streak; with LatticeWindow, which ends surflets anyway, 1/1000.
  */
 inline EigenvalueRange MetricBounds(const NoiseParameters& parameters)
 {
@@ -132,9 +133,10 @@ inline EigenvalueRange MetricBounds(const NoiseParameters& parameters)
 }
 
 /**
- * Symmetric part of a metric in units of 1 / cells² (Rice: "a metric tensor G of the users choice"), at the given
- * Strength but otherwise as it is: eigenvalues beyond MetricBounds are moved to them, `bounded` then. Zero and what
- * is not finite is no metric. `norm` is that of the whole tensor where this is its part in a plane.
+ * Symmetric part of a metric in units of 1 / cells² (Rice: "a metric tensor G of the users
+ * choice"), at the given Strength but otherwise as it is: eigenvalues beyond MetricBounds are moved
+ * to them, `bounded` then. Zero and what is not finite is no metric. `norm` is that of the whole
+ * tensor where this is its part in a plane.
  */
 template <int N>
 AxialMetric<N> MetricFromMetric(

@@ -63,7 +63,8 @@ struct Field
   const TupleReader<float>* Tensors = nullptr;
   /// 6 components as Tensors, the metric itself in 1 / cells²: see MetricFromMetric.
   const TupleReader<double>* Metrics = nullptr;
-  /// 3 components, StreakLength, Strength and EigenvalueSum of each sample; null: those of the parameters.
+  /// 3 components, StreakLength, Strength and EigenvalueSum of each sample; null: those of the
+  /// parameters.
   const TupleReader<float>* Shapes = nullptr;
   /// 3 components, surface normals of any length: asks for the metric of surfaces, 3D only.
   const TupleReader<float>* Normals = nullptr;

@@ -182,7 +182,8 @@ private:
   VU Row;
 };
 
-/// Window of the corner below a fraction in [0, 1]; that of the one above is 1 less it (Kensler: s(t) = 1 - s(1 - t)).
+/// Window of the corner below a fraction in [0, 1]; that of the one above is 1 less it (Kensler:
+/// s(t) = 1 - s(1 - t)).
 HWY_INLINE V CellWindow(Fade fade, V fraction)
 {
   return fade == Fade::Cubic ? FadeOf(fade, fraction) : PlainQuinticFade(fraction);
@@ -190,7 +191,8 @@ HWY_INLINE V CellWindow(Fade fade, V fraction)
 
 /**
  * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix. `near` is
- * the window of the corner below on each axis; that of the one above is 1 less it. `Weighted`: faded by the metric.
+ * the window of the corner below on each axis; that of the one above is 1 less it. `Weighted`:
+ * faded by the metric.
  */
 template <int N, bool Weighted, class Corners>
 WALK_INLINE V SumOverCell(

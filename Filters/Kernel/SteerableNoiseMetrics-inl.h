@@ -279,7 +279,8 @@ HWY_NOINLINE void MetricsOfDirections(
   }
 }
 
-/// Eigenvalues of samples that have a shape of their own, in place of those that MetricsOfDirections gave them.
+/// Eigenvalues of samples that have a shape of their own, in place of those that
+/// MetricsOfDirections gave them.
 template <int N>
 void ReshapeMetrics(const NoiseSetup& setup, const float* shapes, const float* normals,
   std::size_t at, std::size_t count, MetricBlock& block)
@@ -402,7 +403,8 @@ void PadTail(MetricBlock& block, std::size_t end)
   }
 }
 
-/// Tensors and metrics go one by one through Eigen's solver: `get(i, norm)` gives what becomes of one.
+/// Tensors and metrics go one by one through Eigen's solver: `get(i, norm)` gives what becomes of
+/// one.
 template <int N, class Get>
 void MetricsOfTensors(
   const NoiseSetup& setup, std::size_t at, std::size_t count, MetricBlock& block, Get&& get)

@@ -737,8 +737,9 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
       for (std::size_t r = 0; r < patch.Rows; ++r)
       {
         const std::size_t at = Patch::At(r);
-        uniform =
-          Metrics<N>(setup, field, firstOf(r), at, patch.Columns, *block, counts.Bounded) && uniform;
+        const bool all =
+          Metrics<N>(setup, field, firstOf(r), at, patch.Columns, *block, counts.Bounded);
+        uniform = all && uniform;
         if (setup.Octaves.size() > 1)
         {
           std::fill_n(block->Noise + at, patch.Columns + Lanes, 0.0f);

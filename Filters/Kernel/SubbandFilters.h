@@ -34,7 +34,8 @@ namespace steerable
  */
 struct SubbandParameters
 {
-  /// Orientations K: 3, 4, 6 or 8. They follow a distortion of 1.5:1, 2:1, 3:1 and 4:1 respectively.
+  /// Orientations K: 3, 4, 6 or 8. They follow a distortion of 1.5:1, 2:1, 3:1 and 4:1
+  /// respectively.
   int Orientations = 8;
 
   /// Scales J, one octave apart: 1 to 6.

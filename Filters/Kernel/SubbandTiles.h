@@ -79,13 +79,15 @@ std::vector<std::complex<double>> SynthesizeNoise(int size, std::uint32_t seed,
 SubbandTiles MakeSubbandTiles(const SubbandParameters& parameters);
 
 /**
- * What the bands leave of the spectrum: N*N texels of two floats, what is finer than the finest band in its corner of
- * the plane, and what is coarser than the coarsest, with the mean. The sum of all bands and these two is white noise of
- * variance one. Throws std::invalid_argument for parameters out of range.
+ * What the bands leave of the spectrum: N*N texels of two floats, what is finer than the finest
+ * band in its corner of the plane, and what is coarser than the coarsest, with the mean. The sum of
+ * all bands and these two is white noise of variance one. Throws std::invalid_argument for
+ * parameters out of range.
  */
 std::vector<float> MakeResidualTiles(const SubbandParameters& parameters);
 
-/// `components` values a texel in 8 bits, as Quantize has it; `range` gets four standard deviations of each.
+/// `components` values a texel in 8 bits, as Quantize has it; `range` gets four standard deviations
+/// of each.
 std::vector<std::uint8_t> QuantizeValues(
   const std::vector<float>& values, std::size_t components, std::vector<float>& range);
 

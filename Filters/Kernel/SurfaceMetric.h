@@ -60,10 +60,10 @@ TextureGradients PlanarGradients(const Eigen::Vector3d& normal, int axis, double
 Eigen::Vector3d TriplanarBlend(const Eigen::Vector3d& normal);
 
 /**
- * Spacing of the points of a triangle as a form E in space: along a unit vector t they are sqrt(t^T E t) apart. Sides
- * a and b of half a rectangle give a a^T + b b^T, an equilateral triangle 3/4 of its squared side in every direction;
- * of a triangle between, the longest side counts by the cosine of the angle that it is opposite to. The trace is
- * always half of the sum of the squared sides.
+ * Spacing of the points of a triangle as a form E in space: along a unit vector t they are sqrt(t^T
+ * E t) apart. Sides a and b of half a rectangle give a a^T + b b^T, an equilateral triangle 3/4 of
+ * its squared side in every direction; of a triangle between, the longest side counts by the cosine
+ * of the angle that it is opposite to. The trace is always half of the sum of the squared sides.
  */
 Eigen::Matrix3d SpacingForm(const std::array<Eigen::Vector3d, 3>& corners);
 

@@ -51,16 +51,18 @@ std::unique_ptr<steerable::TupleReader<float>> MakeTensorReader(
   vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane = WorldPlane);
 
 /**
- * The same as metrics: in double, times `factor`, and with a third axis where there are four components, which
- * reaches as far as the mean of the two.
+ * The same as metrics: in double, times `factor`, and with a third axis where there are four
+ * components, which reaches as far as the mean of the two.
  */
 std::unique_ptr<steerable::TupleReader<double>> MakeMetricReader(
   vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane, double factor);
 
-/// Arrays that StreakLength, Strength and EigenvalueSum come from, null where they are the same for all samples.
+/// Arrays that StreakLength, Strength and EigenvalueSum come from, null where they are the same for
+/// all samples.
 using ShapeArrays = std::array<vtkDataArray*, 3>;
 
-/// The three of each sample: values of one component, lengths of vectors, and NaN where there is no array.
+/// The three of each sample: values of one component, lengths of vectors, and NaN where there is no
+/// array.
 std::unique_ptr<steerable::TupleReader<float>> MakeShapeReader(const ShapeArrays& arrays);
 
 /// Coordinates of 3-component arrays.

@@ -29,7 +29,8 @@ class Samples
 {
 public:
   /**
-   * `array`: what steers; null: nothing does. `cells`: it belongs to the cells. `shape` as CommonShape has it. `magnification`: samples of an image
+   * `array`: what steers; null: nothing does. `cells`: it belongs to the cells. `shape` as
+   * CommonShape has it. `magnification`: samples of an image
    * for each one that its vectors were interpolated from. `plane`: where two components lie, but flat
    * images have them along their own axes. Vectors longer than `limit` are left out.
    */
@@ -51,7 +52,8 @@ public:
   /// Tensors times `factor` are the metric itself; without effect on vectors.
   void TakeTensorsAsMetrics(double factor);
 
-  /// StreakLength, Strength and EigenvalueSum of each sample from arrays, of which one at least is there.
+  /// StreakLength, Strength and EigenvalueSum of each sample from arrays, of which one at least is
+  /// there.
   void SetShapes(const ShapeArrays& arrays);
 
   /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.

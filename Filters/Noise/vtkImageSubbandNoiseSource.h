@@ -72,8 +72,8 @@ public:
 
   ///@{
   /**
-   * Two more components, "high" and "low": what is finer and what is coarser than all bands, with the mean. The sum of
-   * all components is then white noise of variance one. Default off.
+   * Two more components, "high" and "low": what is finer and what is coarser than all bands, with
+   * the mean. The sum of all components is then white noise of variance one. Default off.
    */
   vtkSetMacro(Residuals, bool);
   vtkGetMacro(Residuals, bool);

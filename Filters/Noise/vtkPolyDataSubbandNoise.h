@@ -5,8 +5,9 @@
  * @brief   even noise on surfaces with distorted texture coordinates, steered by a field
  *
  * Takes a vtkPolyData, or a composite of them, of triangles, quads, polygons and strips, and adds one
- * float point array of anisotropic noise (Goldberg, Zwicker and Durand 2008), which it makes the active scalars. Its
- * variance is one but for what AntiAlias fades, which is most where points are few for a wavelength. Everything else is passed on; the input is not written. Other datasets
+ * float point array of anisotropic noise (Goldberg, Zwicker and Durand 2008), which it makes the
+ * active scalars. Its variance is one but for what AntiAlias fades, which is most where points are
+ * few for a wavelength. Everything else is passed on; the input is not written. Other datasets
  * of a composite are passed on and counted: extract their surface first.
  *
  * Periodic tiles of noise in bands of direction and scale are looked up at the texture coordinates, and
@@ -74,17 +75,20 @@ public:
    * The array that steers the noise is chosen by SetInputArrayToProcess(0, ...), on points or cells.
    * Without it, or with the names "" and "None", nothing steers.
    *
-   * SetInputArrayToProcess(1, ...) chooses weights of the user's own, on points: an array as OutputWeights adds it, with
-   * a component for each band, which takes the place of the weights of every octave. They are used as they are, and
-   * AntiAlias, if it is on, fades them. Without a name, or with "None", weights come from the metric.
+   * SetInputArrayToProcess(1, ...) chooses weights of the user's own, on points: an array as
+   * OutputWeights adds it, with a component for each band, which takes the place of the weights of
+   * every octave. They are used as they are, and AntiAlias, if it is on, fades them. Without a
+   * name, or with "None", weights come from the metric.
    *
-   * SetInputArrayToProcess(4, ...) chooses factors by which the weights of each octave and orientation are multiplied
-   * (the paper's f_k for linear functions): Octaves times Orientations components, orientation fastest, on points.
+   * SetInputArrayToProcess(4, ...) chooses factors by which the weights of each octave and
+   * orientation are multiplied (the paper's f_k for linear functions): Octaves times Orientations
+   * components, orientation fastest, on points.
    *
-   * SetInputArrayToProcess(2, ...) and (3, ...) choose arrays on points that Wavelength and Anisotropy come from, point by
-   * point: values of one component, lengths of 2 or 3, so the steering vectors themselves may say how long features are.
-   * Wavelengths that are not positive and finite, and anisotropies that are not finite, are those of the properties;
-   * the others are kept from 1 to 8. All blocks must have them.
+   * SetInputArrayToProcess(2, ...) and (3, ...) choose arrays on points that Wavelength and
+   * Anisotropy come from, point by point: values of one component, lengths of 2 or 3, so the
+   * steering vectors themselves may say how long features are. Wavelengths that are not positive
+   * and finite, and anisotropies that are not finite, are those of the properties; the others are
+   * kept from 1 to 8. All blocks must have them.
    */
 
   ///@{
@@ -102,9 +106,10 @@ public:
 
   ///@{
   /**
-   * Length over width of features along the vectors, 1 (isotropic) to 8, default 4: the root of the ratio of the
-   * structure tensor's eigenvalues, on average over directions. Orientations limit it, to 4.3 (8), 3.6 (6) and 2.9
-   * (4) by LEAST_SQUARES; where it is more, a warning names the most, which is taken.
+   * Length over width of features along the vectors, 1 (isotropic) to 8, default 4: the root of the
+   * ratio of the structure tensor's eigenvalues, on average over directions. Orientations limit it,
+   * to 4.3 (8), 3.6 (6) and 2.9 (4) by LEAST_SQUARES; where it is more, a warning names the most,
+   * which is taken.
    */
   vtkSetClampMacro(Anisotropy, double, 1.0, 8.0);
   vtkGetMacro(Anisotropy, double);
@@ -130,8 +135,8 @@ public:
 
   ///@{
   /**
-   * Directions of the bands: 3, 4, 6 or 8, default 8, follow stretches of 1.5:1, 2:1, 3:1 and 4:1; others become one of
-   * these, with a warning.
+   * Directions of the bands: 3, 4, 6 or 8, default 8, follow stretches of 1.5:1, 2:1, 3:1 and 4:1;
+   * others become one of these, with a warning.
    */
   void SetOrientations(int orientations);
   vtkGetMacro(Orientations, int);
@@ -139,8 +144,9 @@ public:
 
   ///@{
   /**
-   * Heuristic weights, and heuristic antialiasing, from three radii of a band instead of one, default off: less
-   * aliasing where samples see the texture at a grazing angle. It counts with Method HEURISTIC only.
+   * Heuristic weights, and heuristic antialiasing, from three radii of a band instead of one,
+   * default off: less aliasing where samples see the texture at a grazing angle. It counts with
+   * Method HEURISTIC only.
    */
   vtkSetMacro(RadialTriple, bool);
   vtkGetMacro(RadialTriple, bool);

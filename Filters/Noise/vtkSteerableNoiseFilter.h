@@ -106,19 +106,21 @@ public:
 
   ///@{
   /**
-   * MODEL_STEERABLE, the default, or MODEL_PERLIN: Perlin's own noise as Kensler writes it, with his variants by
-   * Fade, Falloff, Lattice, GradientSet, Basis and Period. It stands for Direction NONE, LatticeWindow on, Quality
-   * 0, AnisotropicWeight and MetricInProjection off and Normalization NONE, whatever these are set to.
+   * MODEL_STEERABLE, the default, or MODEL_PERLIN: Perlin's own noise as Kensler writes it, with
+   * his variants by Fade, Falloff, Lattice, GradientSet, Basis and Period. It stands for Direction
+   * NONE, LatticeWindow on, Quality 0, AnisotropicWeight and MetricInProjection off and
+   * Normalization NONE, whatever these are set to.
    */
   vtkSetClampMacro(Model, int, MODEL_STEERABLE, MODEL_PERLIN);
   vtkGetMacro(Model, int);
   ///@}
 
   /**
-   * Arrays that StreakLength, Strength and EigenvalueSum come from, sample by sample: input arrays 1, 2 and 3 of
-   * SetInputArrayToProcess, the first for the vectors. They lie where the vectors do; of vectors the length counts.
-   * Values are kept within the property's range, and where they are not finite the property counts. Without a name,
-   * or with "None", it counts everywhere, which is the default.
+   * Arrays that StreakLength, Strength and EigenvalueSum come from, sample by sample: input arrays
+   * 1, 2 and 3 of SetInputArrayToProcess, the first for the vectors. They lie where the vectors do;
+   * of vectors the length counts. Values are kept within the property's range, and where they are
+   * not finite the property counts. Without a name, or with "None", it counts everywhere, which is
+   * the default.
    */
   enum InputArrayType
   {
@@ -130,10 +132,11 @@ public:
 
   ///@{
   /**
-   * DIRECTION_FIELD, the default: vectors or tensors steer the noise, and data without them are an error.
-   * DIRECTION_NONE: nothing does, no array is needed, and noise is isotropic on any dataset: at its points, or
-   * at its cells if SetInputArrayToProcess asks for them. What goes by vectors (Strength, the masks,
-   * FollowCurvature, Speed) does not count then, and Basis STREAKS is an error.
+   * DIRECTION_FIELD, the default: vectors or tensors steer the noise, and data without them are an
+   * error. DIRECTION_NONE: nothing does, no array is needed, and noise is isotropic on any dataset:
+   * at its points, or at its cells if SetInputArrayToProcess asks for them. What goes by vectors
+   * (Strength, the masks, FollowCurvature, Speed) does not count then, and Basis STREAKS is an
+   * error.
    */
   vtkSetClampMacro(Direction, int, DIRECTION_FIELD, DIRECTION_NONE);
   vtkGetMacro(Direction, int);
@@ -141,12 +144,14 @@ public:
 
   ///@{
   /**
-   * What tensors are. TENSOR_DIRECTION, the default: the eigenvector of their largest eigenvalue is the direction of
-   * streaks, whose shape the properties below give. TENSOR_METRIC: the metric itself, which measures distances, in
-   * 1 / FeatureSize² as OutputMetric has it: a streak reaches 1 / √eigenvalue cells along each eigenvector.
-   * TENSOR_WORLD_METRIC: the same in 1 / world units². StreakLength, EigenvalueSum, Quality and MinimumEigenvalue do
-   * not count then; eigenvalues are bounded to 1/400 (with LatticeWindow 1/1000) and 16 / FeatureSize², with a
-   * warning that counts them. A metric has no sense: streaks' heads and motion may point to either side.
+   * What tensors are. TENSOR_DIRECTION, the default: the eigenvector of their largest eigenvalue is
+   * the direction of streaks, whose shape the properties below give. TENSOR_METRIC: the metric
+   * itself, which measures distances, in 1 / FeatureSize² as OutputMetric has it: a streak reaches
+   * 1 / √eigenvalue cells along each eigenvector. TENSOR_WORLD_METRIC: the same in 1 / world
+   * units². StreakLength, EigenvalueSum, Quality and MinimumEigenvalue do not count then;
+   * eigenvalues are bounded to 1/400 (with LatticeWindow 1/1000) and 16 / FeatureSize², with a
+   * warning that counts them. A metric has no sense: streaks' heads and motion may point to either
+   * side.
    */
   vtkSetClampMacro(TensorUse, int, TENSOR_DIRECTION, TENSOR_WORLD_METRIC);
   vtkGetMacro(TensorUse, int);
@@ -215,9 +220,10 @@ public:
 
   ///@{
   /**
-   * Surflets fade with the distance that the metric measures, default on. Off needs LatticeWindow, which bounds them
-   * then: Fig. 2 b of the paper, and with MetricInProjection off too, Fig. 2 a. All corners in the window are visited: at
-   * Quality 0 that is fast, at 8 in volumes it takes some thousand for each sample.
+   * Surflets fade with the distance that the metric measures, default on. Off needs LatticeWindow,
+   * which bounds them then: Fig. 2 b of the paper, and with MetricInProjection off too, Fig. 2 a.
+   * All corners in the window are visited: at Quality 0 that is fast, at 8 in volumes it takes some
+   * thousand for each sample.
    */
   vtkSetMacro(AnisotropicWeight, bool);
   vtkGetMacro(AnisotropicWeight, bool);
@@ -436,9 +442,9 @@ public:
 
   ///@{
   /**
-   * Adds the metric of every sample, before curvature, as the 6-component double array "Metric": XX YY
-   * ZZ XY YZ XZ in units of 1 / FeatureSize². Flat images have 0 across their plane. With TensorUse TENSOR_METRIC
-   * it gives the same noise again, where there is a direction. Default off.
+   * Adds the metric of every sample, before curvature, as the 6-component double array "Metric": XX
+   * YY ZZ XY YZ XZ in units of 1 / FeatureSize². Flat images have 0 across their plane. With
+   * TensorUse TENSOR_METRIC it gives the same noise again, where there is a direction. Default off.
    */
   vtkSetMacro(OutputMetric, bool);
   vtkGetMacro(OutputMetric, bool);

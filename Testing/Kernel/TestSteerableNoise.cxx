@@ -1340,7 +1340,8 @@ void ExpectTheSameNoiseOfTheirMetrics(Steering steering)
     }
     const std::string what =
       std::to_string(N) + "D" + (parameters.LatticeWindow ? ", window" : "");
-    EXPECT_LE(std::sqrt(squares), 4e-7) << what;
+    // 2.8e-7 to 3.6e-7 with fused products (AVX2), 4.05e-7 without them (SSE4).
+    EXPECT_LE(std::sqrt(squares), 5e-7) << what;
     EXPECT_LE(LargestDifference(again, expected), Bound) << what; // floats on both ways
     EXPECT_EQ(counts.Bounded, 0u);
   }

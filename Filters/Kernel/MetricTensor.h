@@ -142,6 +142,17 @@ template <int N>
 AxialMetric<N> MetricFromMetric(
   const NoiseParameters& parameters, const Matrix<N>& metric, double norm, bool* bounded = nullptr);
 
+/**
+ * Frobenius norm of the whole tensor of a tuple, XX YY ZZ XY YZ XZ; `tensor` is what TensorOf takes
+ * from it.
+ */
+template <int N, typename Value>
+double NormOf(const Matrix<N>& tensor, const Value* tuple)
+{
+  const double norm = tensor.norm();
+  return N == 2 ? WholeLength(norm, AcrossPlane(tuple)) : norm;
+}
+
 /// Symmetric tensor from 6 components, XX YY ZZ XY YZ XZ.
 template <int N, typename Value>
 Matrix<N> TensorOf(const Value* tuple)

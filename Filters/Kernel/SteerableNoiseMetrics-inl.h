@@ -403,17 +403,20 @@ void PadTail(MetricBlock& block, std::size_t end)
   }
 }
 
-/// Tensors and metrics go one by one through Eigen's solver: `get(i, norm)` gives what becomes of
-/// one.
-template <int N, class Get>
-void MetricsOfTensors(
-  const NoiseSetup& setup, std::size_t at, std::size_t count, MetricBlock& block, Get&& get)
+/// Tensors and metrics go one by one through Eigen's solver: `toMetric(parameters, tensor, norm)`
+/// gives what becomes of one.
+template <int N, typename Value, class ToMetric>
+void MetricsOfTensors(const NoiseSetup& setup, const Value* tuples, const float* shapes,
+  std::size_t at, std::size_t count, MetricBlock& block, ToMetric&& toMetric)
 {
   for (std::size_t i = 0; i < count; ++i)
   {
     const std::size_t to = at + i;
-    double norm = 0.0;
-    const AxialMetric<N> metric = get(i, norm);
+    const Matrix<N> tensor = TensorOf<N>(tuples + 6 * i);
+    const double norm = NormOf<N>(tensor, tuples + 6 * i);
+    const AxialMetric<N> metric = shapes
+      ? toMetric(WithShape(setup.Parameters, shapes + 3 * i), tensor, norm)
+      : toMetric(setup.Parameters, tensor, norm);
     if constexpr (N == 3)
     {
       SetAxes(metric.Direction, metric.SecondAxis, to, block);
@@ -502,36 +505,23 @@ bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
   const float* shapes = field.Shapes ? field.Shapes->Read(first, count, block.Shapes) : nullptr;
   if (field.Tensors)
   {
-    const float* tuples = field.Tensors->Read(first, count, block.Tuples);
-    MetricsOfTensors<N>(setup, at, count, block,
-      [&](std::size_t i, double& norm)
-      {
-        const Matrix<N> tensor = TensorOf<N>(tuples + 6 * i);
-        norm = tensor.norm();
-        norm = N == 2 ? WholeLength(norm, AcrossPlane(tuples + 6 * i)) : norm;
-        return shapes
-          ? MetricFromTensor<N>(WithShape(setup.Parameters, shapes + 3 * i), tensor, norm)
-          : MetricFromTensor<N>(setup.Parameters, tensor, norm);
-      });
+    MetricsOfTensors<N>(setup, field.Tensors->Read(first, count, block.Tuples), shapes, at, count,
+      block,
+      [](const NoiseParameters& parameters, const Matrix<N>& tensor, double norm)
+      { return MetricFromTensor<N>(parameters, tensor, norm); });
     PadTail(block, at + count);
     return false;
   }
   if (field.Metrics)
   {
-    const double* tuples = field.Metrics->Read(first, count, block.MetricTuples);
-    MetricsOfTensors<N>(setup, at, count, block,
-      [&](std::size_t i, double& norm)
+    MetricsOfTensors<N>(setup, field.Metrics->Read(first, count, block.MetricTuples), shapes, at,
+      count, block,
+      [&](const NoiseParameters& parameters, const Matrix<N>& tensor, double norm)
       {
-        const Matrix<N> metric = TensorOf<N>(tuples + 6 * i);
-        norm = metric.norm();
-        norm = N == 2 ? WholeLength(norm, AcrossPlane(tuples + 6 * i)) : norm;
         bool isBounded = false;
-        const AxialMetric<N> result = shapes
-          ? MetricFromMetric<N>(
-              WithShape(setup.Parameters, shapes + 3 * i), metric, norm, &isBounded)
-          : MetricFromMetric<N>(setup.Parameters, metric, norm, &isBounded);
+        const AxialMetric<N> metric = MetricFromMetric<N>(parameters, tensor, norm, &isBounded);
         bounded += isBounded;
-        return result;
+        return metric;
       });
     PadTail(block, at + count);
     return false;

@@ -521,6 +521,24 @@ steerable::EvaluationCounts Samples::Evaluate(
                       : kernel.EvaluatePoints(*this->Positions, this->Field, begin, end, noise);
 }
 
+namespace
+{
+/// Metric of a tuple, XX YY ZZ XY YZ XZ: floats are a tensor with a direction, doubles the metric itself.
+template <int N>
+steerable::AxialMetric<N> MetricOf(const steerable::NoiseParameters& parameters, const float* tuple)
+{
+  const steerable::Matrix<N> tensor = steerable::TensorOf<N>(tuple);
+  return steerable::MetricFromTensor<N>(parameters, tensor, steerable::NormOf<N>(tensor, tuple));
+}
+
+template <int N>
+steerable::AxialMetric<N> MetricOf(const steerable::NoiseParameters& parameters, const double* tuple)
+{
+  const steerable::Matrix<N> tensor = steerable::TensorOf<N>(tuple);
+  return steerable::MetricFromMetric<N>(parameters, tensor, steerable::NormOf<N>(tensor, tuple));
+}
+} // namespace
+
 void Samples::EvaluateMetrics(const steerable::NoiseParameters& common, vtkIdType begin,
   vtkIdType end, double* metrics) const
 {
@@ -542,57 +560,44 @@ void Samples::EvaluateMetrics(const steerable::NoiseParameters& common, vtkIdTyp
   {
     const NoiseParameters parameters = shapes ? WithShape(common, shapes + 3 * i) : common;
     Matrix<3> metric = Matrix<3>::Zero();
+    const auto set = [&](const auto& axial)
+    {
+      const auto part = axial.ToMatrix();
+      metric.topLeftCorner(part.rows(), part.cols()) = part;
+    };
+    const auto setFrom = [&](const auto* tuple)
+    {
+      this->Dimension == 2 ? set(MetricOf<2>(parameters, tuple))
+                           : set(MetricOf<3>(parameters, tuple));
+    };
     if (this->Field.Isotropic)
     {
       metric.diagonal().head(this->Dimension).setOnes();
     }
     else if (own)
     {
-      const Matrix<3> tensor = TensorOf<3>(own + 6 * i);
-      if (this->Dimension == 2)
-      {
-        const Matrix<2> flat = tensor.topLeftCorner<2, 2>();
-        metric.topLeftCorner<2, 2>() = MetricFromMetric<2>(
-          parameters, flat, WholeLength(flat.norm(), AcrossPlane(own + 6 * i))).ToMatrix();
-      }
-      else
-      {
-        metric = MetricFromMetric<3>(parameters, tensor, tensor.norm()).ToMatrix();
-      }
+      setFrom(own + 6 * i);
     }
     else if (this->Field.Tensors)
     {
-      const Matrix<3> tensor = TensorOf<3>(steering + 6 * i);
-      if (this->Dimension == 2)
-      {
-        metric.topLeftCorner<2, 2>() =
-          MetricFromTensor<2>(parameters, tensor.topLeftCorner<2, 2>(),
-            WholeLength(tensor.topLeftCorner<2, 2>().norm(), AcrossPlane(steering + 6 * i)))
-            .ToMatrix();
-      }
-      else
-      {
-        metric = MetricFromTensor<3>(parameters, tensor).ToMatrix();
-      }
+      setFrom(steering + 6 * i);
     }
     else
     {
       const Vector<3> vector = Eigen::Map<const Eigen::Vector3f>(steering + 3 * i).cast<double>();
       if (this->Dimension == 2)
       {
-        metric.topLeftCorner<2, 2>() = 
-          MetricFromVector<2>(
-            parameters, vector.head<2>(), WholeLength(vector.head<2>().norm(), vector[2]))
-            .ToMatrix();
+        set(MetricFromVector<2>(
+          parameters, vector.head<2>(), WholeLength(vector.head<2>().norm(), vector[2])));
       }
       else if (normals)
       {
         const Vector<3> normal = Eigen::Map<const Eigen::Vector3f>(normals + 3 * i).cast<double>();
-        metric = MetricFromSurfaceVector(parameters, vector, normal).ToMatrix();
+        set(MetricFromSurfaceVector(parameters, vector, normal));
       }
       else
       {
-        metric = MetricFromVector<3>(parameters, vector).ToMatrix();
+        set(MetricFromVector<3>(parameters, vector));
       }
     }
     // Back from the axes of the noise to the world's.

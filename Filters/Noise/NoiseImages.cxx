@@ -165,22 +165,34 @@ void CopyLabels(vtkPointData* from, vtkPointData* to, const int coarse[3], const
   }
 }
 
-/// Points that a magnified image has along an axis of so many, all of them asked for.
-int Magnified(int points, int factor)
+/// Samples of a magnified image with so many points along each axis, all of them asked for.
+double CountMagnified(const int (&points)[3], int factor)
 {
-  return points > 0 ? (points - 1) * factor + 1 : 0;
+  double count = 1.0;
+  for (const int along : points)
+  {
+    count *= along > 0 ? (along - 1) * factor + 1 : 0;
+  }
+  return count;
+}
+
+/// Whole extent and spacing of an image before there is one.
+void GetGrid(vtkInformation* info, int (&whole)[6], double (&spacing)[3])
+{
+  info->Get(SDDP::WHOLE_EXTENT(), whole);
+  std::fill_n(spacing, 3, 1.0);
+  if (info->Has(vtkDataObject::SPACING()))
+  {
+    info->Get(vtkDataObject::SPACING(), spacing);
+  }
 }
 } // namespace
 
 void MagnifyInformation(vtkInformation* inInfo, vtkInformation* outInfo, int factor)
 {
   int whole[6];
-  double spacing[3] = { 1.0, 1.0, 1.0 };
-  inInfo->Get(SDDP::WHOLE_EXTENT(), whole);
-  if (inInfo->Has(vtkDataObject::SPACING()))
-  {
-    inInfo->Get(vtkDataObject::SPACING(), spacing);
-  }
+  double spacing[3];
+  GetGrid(inInfo, whole, spacing);
   for (int axis = 0; axis < 3; ++axis)
   {
     // A flat axis stays flat; the others keep their first and last sample.
@@ -206,17 +218,15 @@ int GetAutomaticMagnification(vtkInformation* inInfo, double featureSize, double
   constexpr double mostSamples = 4194304.0;
   constexpr int mostFactor = 16;
   int whole[6];
-  double spacing[3] = { 1.0, 1.0, 1.0 };
-  inInfo->Get(SDDP::WHOLE_EXTENT(), whole);
-  if (inInfo->Has(vtkDataObject::SPACING()))
-  {
-    inInfo->Get(vtkDataObject::SPACING(), spacing);
-  }
+  double spacing[3];
+  GetGrid(inInfo, whole, spacing);
+  int points[3];
   double bounds[6];
   double farthest = 0.0;
   for (int axis = 0; axis < 3; ++axis)
   {
     const int cells = whole[2 * axis + 1] - whole[2 * axis];
+    points[axis] = cells + 1;
     bounds[2 * axis] = 0.0;
     bounds[2 * axis + 1] = cells * std::abs(spacing[axis]);
     farthest = cells > 0 ? std::max(farthest, std::abs(spacing[axis])) : farthest;
@@ -226,16 +236,7 @@ int GetAutomaticMagnification(vtkInformation* inInfo, double featureSize, double
   const double size = (featureSize > 0.0 ? featureSize : common.GetFeatureSize(0.0)) / fineness;
   const double wanted = std::ceil(6.0 * farthest / size);
   int factor = wanted >= 1.0 ? static_cast<int>(std::min<double>(wanted, mostFactor)) : 1;
-  const auto samples = [&](int by)
-  {
-    double count = 1.0;
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      count *= Magnified(whole[2 * axis + 1] - whole[2 * axis] + 1, by);
-    }
-    return count;
-  };
-  while (factor > 1 && samples(factor) > mostSamples)
+  while (factor > 1 && CountMagnified(points, factor) > mostSamples)
   {
     --factor;
   }
@@ -248,9 +249,9 @@ void CheckMemory(const std::vector<vtkImageData*>& images, int factor)
   double bytes = 0.0;
   for (vtkImageData* image : images)
   {
-    const int* coarse = image->GetDimensions();
-    const double fine = double(Magnified(coarse[0], factor)) * Magnified(coarse[1], factor) *
-      Magnified(coarse[2], factor);
+    int coarse[3];
+    image->GetDimensions(coarse);
+    const double fine = CountMagnified(coarse, factor);
     double perPoint = sizeof(float); // the noise
     for (vtkDataSetAttributes* attributes : { static_cast<vtkDataSetAttributes*>(
                                                 image->GetPointData()),

@@ -19,6 +19,7 @@
 #include "vtkSMStringListDomain.h"
 
 #include <cstring>
+#include <string>
 
 namespace
 {
@@ -69,26 +70,32 @@ void ShowNoise(vtkObject*, unsigned long, void*, void* data)
   auto* source = inputs && type
     ? vtkSMSourceProxy::SafeDownCast(vtkSMPropertyHelper(inputs).GetAsProxy(0))
     : nullptr;
-  if (!source || !source->GetXMLName())
+  const std::string name = source && source->GetXMLName() ? source->GetXMLName() : "";
+  if (name != "FlowNoise" && name != "SteerableNoise")
   {
     return;
   }
   const double most = 1e6 * vtkPVRenderViewSettings::GetInstance()->GetOutlineThreshold();
-  const bool large = source->GetDataInformation(0)->GetNumberOfCells() >= most;
-  auto* types = type->FindDomain<vtkSMStringListDomain>();
-  const char* const ours = "Steerable Noise";
-  unsigned int index = 0;
-  if (std::strcmp(source->GetXMLName(), "FlowNoise") == 0 && !large && types &&
-    types->IsInDomain(ours, index))
+  if (source->GetDataInformation(0)->GetNumberOfCells() >= most)
   {
-    vtkSMPropertyHelper(type).Set(ours);
+    return;
   }
-  else if (std::strcmp(source->GetXMLName(), "SteerableNoise") == 0)
+  if (name == "FlowNoise")
+  {
+    const char* const ours = "Steerable Noise";
+    auto* types = type->FindDomain<vtkSMStringListDomain>();
+    unsigned int index = 0;
+    if (types && types->IsInDomain(ours, index))
+    {
+      vtkSMPropertyHelper(type).Set(ours);
+    }
+  }
+  else
   {
     int association = 0;
     vtkPVArrayInformation* noise = FindNoise(source, association);
     auto* shown = vtkSMPVRepresentationProxy::SafeDownCast(info->Proxy);
-    if (noise && shown && !large)
+    if (noise && shown)
     {
       if (std::strcmp(vtkSMPropertyHelper(type).GetAsString(), "Outline") == 0)
       {

@@ -11,7 +11,6 @@ import plugintest
 from paraview.simple import *
 from paraview.servermanager import vtkSMPropertyHelper
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 plugintest.load_plugin()
@@ -126,10 +125,7 @@ frames = os.path.join(tempfile.mkdtemp(), "frame.png")
 SaveAnimation(frames, view, scene, ImageResolution=[400, 300], FrameWindow=[0, 3])
 shown = []
 for frame in range(4):
-    reader = vtkPNGReader()
-    reader.SetFileName(frames.replace(".png", ".%04d.png" % frame))
-    reader.Update()
-    shown.append(vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).astype(float))
+    shown.append(plugintest.pixels(frames.replace(".png", ".%04d.png" % frame)))
 for frame in range(4):
     change = numpy.abs(shown[frame] - shown[frame - 1]).mean()
     assert change > 0.5, (frame, change)

@@ -14,11 +14,11 @@ import numpy
 import steerablenoise  # so that the filter's own object has its methods
 from paraview import simple
 from paraview.vtk.numpy_interface import dataset_adapter
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkLogger
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
-from vtkmodules.vtkIOImage import vtkPNGReader, vtkPNGWriter
+from vtkmodules.vtkIOImage import vtkPNGWriter
 
 TILE = (480, 360)
 LOG = os.path.join(pt.OUTPUT, "shared_data.log")
@@ -73,10 +73,7 @@ def picture(noise, association, title, direction, up, representation="Surface"):
     view.CameraParallelScale *= 0.9
     path = os.path.join(pt.OUTPUT, "shared_data_tile.png")
     simple.SaveScreenshot(path, view, ImageResolution=list(TILE))
-    reader = vtkPNGReader()
-    reader.SetFileName(path)
-    reader.Update()
-    tiles.append(vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars()).reshape(TILE[1], TILE[0], -1)[..., :3].copy())
+    tiles.append(pt.pixels(path).astype(numpy.uint8).reshape(TILE[1], TILE[0], 3))
     os.remove(path)
     simple.Hide(noise, view)
     simple.Delete(caption)

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <sstream>
 #include <type_traits>
@@ -338,6 +339,13 @@ std::unique_ptr<steerable::TupleReader<double>> MakeMetricReader(
   vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane, double factor)
 {
   return std::make_unique<TensorReader<double>>(array, axes, inPlane, plane, factor);
+}
+
+std::string GetChosenName(vtkInformation* choice)
+{
+  const char* name =
+    choice->Has(vtkDataObject::FIELD_NAME()) ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  return name && std::strcmp(name, "None") != 0 ? name : "";
 }
 
 std::unique_ptr<steerable::TupleReader<float>> MakeShapeReader(const ShapeArrays& arrays)

@@ -14,11 +14,13 @@
 
 #include <array>
 #include <memory>
+#include <string>
 #include <vector>
 
 class vtkDataArray;
 class vtkDataSet;
 class vtkDataSetAttributes;
+class vtkInformation;
 
 namespace noise
 {
@@ -56,6 +58,9 @@ std::unique_ptr<steerable::TupleReader<float>> MakeTensorReader(
  */
 std::unique_ptr<steerable::TupleReader<double>> MakeMetricReader(
   vtkDataArray* array, const Axes& axes, bool inPlane, const Plane& plane, double factor);
+
+/// Name of the array that SetInputArrayToProcess chose; empty without one, or where it is "None".
+std::string GetChosenName(vtkInformation* choice);
 
 /// Arrays that StreakLength, Strength and EigenvalueSum come from, null where they are the same for
 /// all samples.

@@ -12,10 +12,16 @@
 
 namespace noise
 {
-/// 3, or of 4, 6 and 8 the largest that is not above `orientations`, at least 4.
-inline int AllowedOrientations(int orientations)
+/// 3, or of 4, 6 and 8 the largest that is not above `orientations`, at least 4; another one with a warning.
+inline int TakeOrientations(vtkObject* self, int orientations)
 {
-  return orientations == 3 ? 3 : orientations >= 8 ? 8 : orientations >= 6 ? 6 : 4;
+  const int allowed = orientations == 3 ? 3 : orientations >= 8 ? 8 : orientations >= 6 ? 6 : 4;
+  if (allowed != orientations)
+  {
+    vtkWarningWithObjectMacro(self,
+      "Orientations can be 3, 4, 6 or 8, not " << orientations << ": " << allowed << " was taken.");
+  }
+  return allowed;
 }
 
 /// Names components o<i>s<j>, orientation fastest; `plane` is put in front.

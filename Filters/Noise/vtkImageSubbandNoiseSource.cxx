@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkImageSubbandNoiseSource.h"
 
+#include "NoiseErrors.h"
 #include "SubbandNames.h"
 #include "SubbandTiles.h"
 
@@ -75,12 +76,7 @@ vtkImageSubbandNoiseSource::~vtkImageSubbandNoiseSource() = default;
 //------------------------------------------------------------------------------
 void vtkImageSubbandNoiseSource::SetOrientations(int orientations)
 {
-  const int allowed = noise::AllowedOrientations(orientations);
-  if (allowed != orientations)
-  {
-    vtkWarningMacro("Orientations can be 3, 4, 6 or 8, not " << orientations << ": " << allowed
-                                                             << " was taken.");
-  }
+  const int allowed = noise::TakeOrientations(this, orientations);
   if (this->Orientations != allowed)
   {
     this->Orientations = allowed;
@@ -164,8 +160,7 @@ int vtkImageSubbandNoiseSource::RequestData(
   }
   catch (const std::exception& error)
   {
-    output->Initialize();
-    vtkErrorMacro(<< error.what()); // and no return of 0, to which the executive adds a page of its own
+    return noise::Refuse(this, output, error.what());
   }
   return 1;
 }

@@ -4,10 +4,11 @@
 
 #include "NoiseArrays.h"
 #include "NoiseBounds.h"
+#include "NoiseErrors.h"
 #include "NoiseGhosts.h"
 #include "NoiseThreads.h"
-#include "SubbandNames.h"
 #include "SubbandAnisotropy.h"
+#include "SubbandNames.h"
 #include "SubbandSurface.h"
 #include "SubbandTiles.h"
 #include "SubbandWeights.h"
@@ -31,7 +32,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <exception>
 #include <limits>
 #include <map>
@@ -359,6 +359,24 @@ struct vtkPolyDataSubbandNoise::Internals
 {
   TileCache TextureTiles;
   TileCache PlaneTiles;
+
+  /// How long features become, tabulated anew only for other parameters: that takes some 20 ms.
+  const steerable::SubbandAnisotropy* GetAnisotropy(int orientations, steerable::WeightMethod method)
+  {
+    if (!this->Anisotropy || orientations != this->AnisotropyOrientations ||
+      method != this->AnisotropyMethod)
+    {
+      this->Anisotropy = std::make_unique<steerable::SubbandAnisotropy>(orientations, method);
+      this->AnisotropyOrientations = orientations;
+      this->AnisotropyMethod = method;
+    }
+    return this->Anisotropy.get();
+  }
+
+private:
+  std::unique_ptr<steerable::SubbandAnisotropy> Anisotropy;
+  int AnisotropyOrientations = 0;
+  steerable::WeightMethod AnisotropyMethod = steerable::WeightMethod::None;
 };
 
 namespace
@@ -389,6 +407,8 @@ struct Evaluator
   vtkDataArray* WavelengthArray = nullptr;
   vtkDataArray* AnisotropyArray = nullptr;
   const steerable::SubbandAnisotropy* Scale = nullptr; // null: Method None
+  /// The property, where the array of anisotropies has no value.
+  double Wanted = 1.0;
 
   double GetWavelength(vtkIdType point) const
   {
@@ -403,7 +423,6 @@ struct Evaluator
     const double wanted = AnisotropyAt(this->AnisotropyArray, point, this->Wanted);
     return this->Scale ? this->Scale->GetSteering(wanted) : wanted;
   }
-  double Wanted = 1.0;
 
   // The points of a chunk that one set of tiles contributes to.
   struct Plane
@@ -652,8 +671,7 @@ public:
     }
     if (choice->Has(vtkDataObject::FIELD_NAME()))
     {
-      const char* name = choice->Get(vtkDataObject::FIELD_NAME());
-      this->Name = name && std::strcmp(name, "None") != 0 ? name : "";
+      this->Name = noise::GetChosenName(choice);
     }
     else if (choice->Has(vtkDataObject::FIELD_ATTRIBUTE_TYPE()))
     {
@@ -760,12 +778,7 @@ vtkPolyDataSubbandNoise::~vtkPolyDataSubbandNoise()
 //------------------------------------------------------------------------------
 void vtkPolyDataSubbandNoise::SetOrientations(int orientations)
 {
-  const int allowed = noise::AllowedOrientations(orientations);
-  if (allowed != orientations)
-  {
-    vtkWarningMacro("Orientations can be 3, 4, 6 or 8, not " << orientations << ": " << allowed
-                                                             << " was taken.");
-  }
+  const int allowed = noise::TakeOrientations(this, orientations);
   if (this->Orientations != allowed)
   {
     this->Orientations = allowed;
@@ -782,15 +795,6 @@ void vtkPolyDataSubbandNoise::SetPhase(double phase)
     this->Phase = phase;
     this->Modified();
   }
-}
-
-//------------------------------------------------------------------------------
-std::string vtkPolyDataSubbandNoise::GetArrayName(int which)
-{
-  vtkInformation* choice = this->GetInputArrayInformation(which);
-  const char* name =
-    choice->Has(vtkDataObject::FIELD_NAME()) ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
-  return name && std::strcmp(name, "None") != 0 ? name : "";
 }
 
 //------------------------------------------------------------------------------
@@ -819,13 +823,7 @@ int vtkPolyDataSubbandNoise::RequestData(
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector);
-  // One sentence says it: after a return of 0 the executive would add a page of its own.
-  const auto refuse = [&](const std::string& why)
-  {
-    output->Initialize();
-    vtkErrorMacro(<< why);
-    return 1;
-  };
+  const auto refuse = [&](const std::string& why) { return noise::Refuse(this, output, why); };
   if (!this->ResultArrayName || !*this->ResultArrayName)
   {
     return refuse("ResultArrayName is empty. Give the noise array a name.");
@@ -935,9 +933,11 @@ int vtkPolyDataSubbandNoise::RequestData(
   double anisotropy = finder.IsSteered() ? this->Anisotropy : 1.0;
   double wanted = anisotropy;
   double asked = anisotropy; // at the most, where an array says it
-  const std::string wavelengthName = this->GetArrayName(WAVELENGTH_ARRAY);
+  const auto nameOf = [&](int which)
+  { return noise::GetChosenName(this->GetInputArrayInformation(which)); };
+  const std::string wavelengthName = nameOf(WAVELENGTH_ARRAY);
   const std::string anisotropyName =
-    finder.IsSteered() ? this->GetArrayName(ANISOTROPY_ARRAY) : std::string();
+    finder.IsSteered() ? nameOf(ANISOTROPY_ARRAY) : std::string();
   double lengths[3] = { std::numeric_limits<double>::infinity(), // least, -greatest, -anisotropy
     std::numeric_limits<double>::infinity(), -1.0 };
   for (Block& block : blocks)
@@ -958,18 +958,19 @@ int vtkPolyDataSubbandNoise::RequestData(
     };
     block.Wavelengths = find(wavelengthName, "Wavelength");
     block.Anisotropies = find(anisotropyName, "Anisotropy");
-    for (vtkIdType i = 0; i < block.Mesh->GetNumberOfPoints(); ++i)
+    const vtkIdType points = block.Mesh->GetNumberOfPoints();
+    for (vtkIdType i = 0; block.Wavelengths && i < points; ++i)
     {
-      const double length = block.Wavelengths ? WavelengthAt(block.Wavelengths, i, 0.0) : 0.0;
+      const double length = WavelengthAt(block.Wavelengths, i, 0.0);
       if (length > 0.0)
       {
         lengths[0] = std::min(lengths[0], length);
         lengths[1] = std::min(lengths[1], -length);
       }
-      if (block.Anisotropies)
-      {
-        lengths[2] = std::min(lengths[2], -AnisotropyAt(block.Anisotropies, i, 1.0));
-      }
+    }
+    for (vtkIdType i = 0; block.Anisotropies && i < points; ++i)
+    {
+      lengths[2] = std::min(lengths[2], -AnisotropyAt(block.Anisotropies, i, 1.0));
     }
   }
   Reduce(this->Controller, lengths, 3, vtkCommunicator::MIN_OP);
@@ -977,12 +978,12 @@ int vtkPolyDataSubbandNoise::RequestData(
   {
     wanted = asked = -lengths[2];
   }
-  std::unique_ptr<steerable::SubbandAnisotropy> anisotropyScale;
+  const steerable::SubbandAnisotropy* anisotropyScale = nullptr;
   double mostAnisotropy = std::numeric_limits<double>::infinity();
   if (finder.IsSteered() && this->Method != NONE &&
     (this->Anisotropy > 1.0 || !anisotropyName.empty()))
   {
-    anisotropyScale = std::make_unique<steerable::SubbandAnisotropy>(
+    anisotropyScale = this->Cache->GetAnisotropy(
       this->Orientations, static_cast<steerable::WeightMethod>(this->Method));
     anisotropy = anisotropyScale->GetSteering(this->Anisotropy);
     mostAnisotropy = anisotropyScale->GetMost();
@@ -1031,8 +1032,8 @@ int vtkPolyDataSubbandNoise::RequestData(
   const bool folds = foldedArea <= LargestFoldedShare * mapped;
 
   PointCounts counts;
-  const std::string ownWeights = this->GetArrayName(WEIGHTS_ARRAY);
-  const std::string factorsName = this->GetArrayName(FACTORS_ARRAY);
+  const std::string ownWeights = nameOf(WEIGHTS_ARRAY);
+  const std::string factorsName = nameOf(FACTORS_ARRAY);
   double textureRepeats = 1.0;
   try
   {
@@ -1096,34 +1097,38 @@ int vtkPolyDataSubbandNoise::RequestData(
       evaluator.Noise = result->GetPointer(0);
       evaluator.WavelengthArray = block.Wavelengths;
       evaluator.AnisotropyArray = block.Anisotropies;
-      evaluator.Scale = anisotropyScale.get();
+      evaluator.Scale = anisotropyScale;
       evaluator.Wanted = this->Anisotropy;
       vtkPointData* pointData = block.Mesh->GetPointData();
+      const auto find = [&](const std::string& name, int components) -> vtkDataArray*
+      {
+        vtkDataArray* array = pointData->GetArray(name.c_str());
+        return array && array->GetNumberOfComponents() == components &&
+            array->GetNumberOfTuples() == points
+          ? array
+          : nullptr;
+      };
       if (!ownWeights.empty())
       {
         const int needed = planes * layout.Pyramid.Components();
-        vtkDataArray* array = pointData->GetArray(ownWeights.c_str());
-        if (!array || array->GetNumberOfComponents() != needed ||
-          array->GetNumberOfTuples() != points)
+        evaluator.OwnWeights = find(ownWeights, needed);
+        if (!evaluator.OwnWeights)
         {
           throw std::invalid_argument("Weights '" + ownWeights + "' are not on the points with " +
             std::to_string(needed) + " components (" + std::to_string(layout.Pyramid.Orientations) +
             " orientations, " + std::to_string(layout.Pyramid.Scales) + " scales" +
             (textured ? "" : ", 3 planes") + "). OutputWeights adds such an array to begin with.");
         }
-        evaluator.OwnWeights = array;
       }
       if (!factorsName.empty())
       {
         const int needed = this->Octaves * layout.Pyramid.Orientations;
-        vtkDataArray* array = pointData->GetArray(factorsName.c_str());
-        if (!array || array->GetNumberOfComponents() != needed ||
-          array->GetNumberOfTuples() != points)
+        evaluator.Factors = find(factorsName, needed);
+        if (!evaluator.Factors)
         {
           throw std::invalid_argument("Factors '" + factorsName + "' are not on the points with " +
             std::to_string(needed) + " components, one for each octave and orientation.");
         }
-        evaluator.Factors = array;
       }
       if (this->OutputWeights)
       {

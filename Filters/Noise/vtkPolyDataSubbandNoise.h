@@ -32,8 +32,6 @@
 #include "SteerableNoiseFiltersModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
 
-#include <string>
-
 class vtkMultiProcessController;
 
 class STEERABLENOISEFILTERS_EXPORT vtkPolyDataSubbandNoise : public vtkPassInputTypeAlgorithm
@@ -276,9 +274,6 @@ protected:
 private:
   vtkPolyDataSubbandNoise(const vtkPolyDataSubbandNoise&) = delete;
   void operator=(const vtkPolyDataSubbandNoise&) = delete;
-
-  /// Of an input array, empty where none is chosen.
-  std::string GetArrayName(int which);
 
   struct Internals;
   Internals* Cache; // tiles, kept while their parameters stand

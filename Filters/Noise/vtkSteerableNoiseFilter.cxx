@@ -5,6 +5,7 @@
 #include "MetricTensor.h"
 #include "NoiseArrays.h"
 #include "NoiseBounds.h"
+#include "NoiseErrors.h"
 #include "NoiseGhosts.h"
 #include "NoiseImages.h"
 #include "NoiseLengths.h"
@@ -35,7 +36,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <sstream>
@@ -399,20 +399,18 @@ struct vtkSteerableNoiseFilter::Internals
     vtkDataSetAttributes* attributes = GetAttributes(block.DataSet, block.Cells);
     for (int which = 0; which < 3; ++which)
     {
-      vtkInformation* choice = this->Self->GetInputArrayInformation(STREAK_LENGTH_ARRAY + which);
-      const char* name = choice->Has(vtkDataObject::FIELD_NAME())
-        ? choice->Get(vtkDataObject::FIELD_NAME())
-        : nullptr;
-      if (!name || !*name || std::strcmp(name, "None") == 0)
+      const std::string name = noise::GetChosenName(
+        this->Self->GetInputArrayInformation(STREAK_LENGTH_ARRAY + which));
+      if (name.empty())
       {
         continue;
       }
-      vtkDataArray* array = attributes->GetArray(name);
+      vtkDataArray* array = attributes->GetArray(name.c_str());
       if (!array || array->GetNumberOfComponents() > 3 ||
         array->GetNumberOfTuples() != block.Array->GetNumberOfTuples())
       {
         const char* place = block.Cells ? "cells" : "points";
-        why = std::string("Array '") + name + "' for " + names[which] +
+        why = "Array '" + name + "' for " + names[which] +
           (array ? " has not 1 to 3 components with a value for each of the "
                  : " is not on the ") +
           place + ", where the vectors are. Choose another one, or convert it (" +
@@ -762,13 +760,7 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     time = outInfo->Get(SDDP::UPDATE_TIME_STEP());
   }
-  // One sentence says it: after a return of 0 the executive would add a page of its own.
-  const auto refuse = [&](const std::string& why)
-  {
-    output->Initialize();
-    vtkErrorMacro(<< why);
-    return 1;
-  };
+  const auto refuse = [&](const std::string& why) { return noise::Refuse(this, output, why); };
   if (!this->ResultArrayName || !*this->ResultArrayName)
   {
     return refuse("ResultArrayName is empty. Give the noise array a name.");

@@ -21,6 +21,7 @@
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
+#include "vtkPolyData.h"
 #include "vtkSMPThreadLocal.h"
 #include "vtkSMPTools.h"
 #include "vtkStaticPointLocator.h"
@@ -31,6 +32,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -656,30 +658,86 @@ Eigen::Array3d SpacingOfEdges(const Places& corners)
   return (2.0 * sum / static_cast<double>(corners.size())).sqrt();
 }
 
-/// Distance of a place from the nearest other one along each axis if neighbours are on all sides.
-bool GetNearest(vtkStaticPointLocator* locator, vtkDataSet* dataset, vtkIdType point,
-  vtkIdList* near, Eigen::Array3d& spacing)
+/// Distances of points from the nearest other ones.
+class NearestPoints
 {
-  Eigen::Vector3d place;
-  dataset->GetPoint(point, place.data());
-  if (!place.allFinite())
+public:
+  explicit NearestPoints(vtkDataSet* dataset)
+    : DataSet(dataset)
   {
-    return false;
-  }
-  locator->FindClosestNPoints(8, place.data(), near);
-  for (const vtkIdType other : *near)
-  {
-    Eigen::Vector3d there;
-    dataset->GetPoint(other, there.data());
-    const double distance = (there - place).norm();
-    if (std::isfinite(distance) && distance > 0.0)
+    Eigen::AlignedBox3d box;
+    for (vtkIdType point = 0; point < dataset->GetNumberOfPoints(); ++point)
     {
-      spacing.setConstant(distance);
-      return true;
+      const Eigen::Vector3d place = this->GetPlace(point);
+      if (place.allFinite())
+      {
+        box.extend(place);
+        this->Points.push_back(point);
+      }
     }
+    // Halves, since a difference of huge numbers has no room.
+    this->Origin = box.min() / 2.0;
+    this->Unit = this->Points.empty() ? 0.0 : (box.max() / 2.0 - this->Origin).maxCoeff();
+    if (!(this->Unit > 0.0))
+    {
+      this->Points.clear();
+      return;
+    }
+    // The locator sorts places into bins by arithmetic that has no bounds: it gets none that is NaN or infinite,
+    // and coordinates from 0 to 1 whatever the dataset's are.
+    vtkNew<vtkPoints> places;
+    places->SetDataTypeToDouble();
+    for (const vtkIdType point : this->Points)
+    {
+      places->InsertNextPoint(this->Normalize(this->GetPlace(point)).data());
+    }
+    this->Normalized->SetPoints(places);
+    this->Locator->SetDataSet(this->Normalized);
+    this->Locator->BuildLocator();
   }
-  return false;
-}
+
+  /// 0 if there is none.
+  double GetDistance(vtkIdType point)
+  {
+    const Eigen::Vector3d place = this->GetPlace(point);
+    if (!place.allFinite() || this->Points.empty())
+    {
+      return 0.0;
+    }
+    this->Locator->FindClosestNPoints(8, this->Normalize(place).data(), this->Near);
+    for (const vtkIdType other : *this->Near)
+    {
+      const double distance = (this->GetPlace(this->Points[other]) - place).norm();
+      if (std::isfinite(distance) && distance > 0.0)
+      {
+        return distance;
+      }
+    }
+    return 0.0;
+  }
+
+private:
+  Eigen::Vector3d GetPlace(vtkIdType point) const
+  {
+    Eigen::Vector3d place;
+    this->DataSet->GetPoint(point, place.data());
+    return place;
+  }
+
+  Eigen::Vector3d Normalize(const Eigen::Vector3d& place) const
+  {
+    return (place / 2.0 - this->Origin) / this->Unit;
+  }
+
+  vtkDataSet* DataSet;
+  /// Those that have a place.
+  std::vector<vtkIdType> Points;
+  Eigen::Vector3d Origin;
+  double Unit = 0.0;
+  vtkNew<vtkPolyData> Normalized;
+  vtkNew<vtkStaticPointLocator> Locator;
+  vtkNew<vtkIdList> Near;
+};
 } // namespace
 
 void SampleSpacing::Add(
@@ -716,20 +774,17 @@ void SampleSpacing::Add(
     }
   };
   vtkNew<vtkIdList> ids;
-  vtkSmartPointer<vtkStaticPointLocator> locator;
+  std::optional<NearestPoints> nearest;
   const auto addNearest = [&](vtkIdType point)
   {
-    if (!locator)
+    if (!nearest)
     {
-      locator = vtkSmartPointer<vtkStaticPointLocator>::New();
-      locator->SetDataSet(dataset);
-      locator->BuildLocator();
+      nearest.emplace(dataset);
     }
-    vtkNew<vtkIdList> near;
-    Eigen::Array3d spacing;
-    if (GetNearest(locator, dataset, point, near, spacing))
+    const double distance = nearest->GetDistance(point);
+    if (distance > 0.0)
     {
-      add(spacing);
+      add(Eigen::Array3d::Constant(distance));
     }
   };
   // Distances of the nearest are looked for at fewer places: each takes a search.

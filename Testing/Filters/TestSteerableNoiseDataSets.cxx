@@ -1032,6 +1032,20 @@ TEST(SteerableNoiseDataSets, SpacingIsTheDistanceOfNeighboursAndNotTheSizeOfCell
   auto loose = Sheet(VTK_QUAD, 1);
   loose->SetCells(VTK_QUAD, vtkSmartPointer<vtkCellArray>::New());
   EXPECT_NEAR(AutomaticSize(loose), expected, 1e-6) << "points without cells";
+  for (const double unit : { 0x1p-100, 0x1p100 })
+  {
+    vtkNew<vtkPoints> scaled;
+    scaled->SetDataTypeToDouble();
+    for (vtkIdType i = 0; i < loose->GetNumberOfPoints(); ++i)
+    {
+      const double* place = loose->GetPoint(i);
+      scaled->InsertNextPoint(unit * place[0], unit * (place[1] - 1.0), unit * place[2]);
+    }
+    auto other = Sheet(VTK_QUAD, 1);
+    other->SetCells(VTK_QUAD, vtkSmartPointer<vtkCellArray>::New());
+    other->SetPoints(scaled);
+    EXPECT_NEAR(AutomaticSize(other) / unit, expected, 1e-6) << "points without cells";
+  }
 
   // A polygon of 64 corners on a circle of radius 1: they are 0.098 apart.
   std::vector<double> corners;

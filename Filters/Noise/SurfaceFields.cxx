@@ -9,16 +9,20 @@
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
 
+#include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
+#include "vtkIdList.h"
 #include "vtkMath.h"
+#include "vtkNew.h"
 #include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -125,6 +129,28 @@ vtkSmartPointer<vtkFloatArray> CellsToPoints(vtkPolyData* surface, vtkFloatArray
   return points;
 }
 
+double GetLargestCell(vtkPolyData* surface)
+{
+  double largest = 0.0;
+  for (vtkCellArray* cells : { surface->GetLines(), surface->GetPolys(), surface->GetStrips() })
+  {
+    vtkNew<vtkIdList> ids;
+    for (vtkIdType cell = 0; cell < cells->GetNumberOfCells(); ++cell)
+    {
+      cells->GetCellAtId(cell, ids);
+      Eigen::AlignedBox3d box;
+      for (const vtkIdType id : *ids)
+      {
+        Eigen::Vector3d place;
+        surface->GetPoint(id, place.data());
+        box.extend(place);
+      }
+      largest = std::max(largest, ids->GetNumberOfIds() > 0 ? box.diagonal().squaredNorm() : 0.0);
+    }
+  }
+  return std::sqrt(largest);
+}
+
 /// NaN would not survive a shader.
 void MarkNotFinite(vtkFloatArray* array)
 {
@@ -193,6 +219,7 @@ SurfaceFields ComputeSurfaceFields(
       normal = normal.allFinite() ? normal.normalized().eval() : Eigen::Vector3f::Zero().eval();
     }
     fields.Curvature = samples.GetCurvature();
+    fields.LargestCell = GetLargestCell(surface);
   }
   MarkNotFinite(fields.Steering);
   return fields;

@@ -37,6 +37,8 @@ struct SurfaceFields
   vtkSmartPointer<vtkFloatArray> Curvature;
   /// Length (Frobenius norm) of the longest finite vector (tensor); 1 where there is none.
   double Longest = 1.0;
+  /// Diagonal of the box that holds the largest cell, in world units; 0 for tensors.
+  double LargestCell = 0.0;
 
   /// So much longer than what is finite that it shows through any interpolation.
   static constexpr float NotFinite = 1e30f;

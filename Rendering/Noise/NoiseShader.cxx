@@ -50,6 +50,7 @@ std::string GetDefines(const ShaderOptions& options, const ShaderVariant& varian
      << "\n#define SURFACE_NORMAL_EIGENVALUE " << SurfaceNormalEigenvalue << "\n";
   os << (variant.Tensors ? "#define NOISE_TENSORS\n" : "")
      << (variant.PerCell ? "#define NOISE_CELLS\n" : "")
+     << (variant.AtVertices ? "#define NOISE_AT_VERTICES\n" : "")
      << (model.Surflet == Basis::Streaks ? "#define NOISE_STREAKS\n" : "")
      << (model.Motion ? "#define NOISE_MOTION\n" : "") << (options.Pixels ? "#define NOISE_PIXELS\n" : "");
   return os.str();
@@ -63,43 +64,46 @@ void AddAfter(vtkShader* shader, const std::string& tag, const std::string& text
   shader->SetSource(source);
 }
 
-/// What the vertices say but places.
+/// What the vertices give to the fragments.
 std::vector<std::string> GetVaryings(const ShaderVariant& variant)
 {
-  return variant.PerCell ? std::vector<std::string>{}
-    : variant.Tensors    ? std::vector<std::string>{ "noiseSteering", "noiseSteering2" }
-                         : std::vector<std::string>{ "noiseSteering", "noiseNormal", "noiseBend" };
+  return variant.AtVertices ? std::vector<std::string>{ "noiseOfVertex" }
+    : variant.PerCell       ? std::vector<std::string>{ "noisePlace" }
+    : variant.Tensors ? std::vector<std::string>{ "noisePlace", "noiseSteering", "noiseSteering2" }
+                      : std::vector<std::string>{ "noisePlace", "noiseSteering", "noiseNormal", "noiseBend" };
+}
+
+std::string DeclareVaryings(const ShaderVariant& variant, const char* qualifier, const char* ending)
+{
+  std::string text;
+  for (const std::string& name : GetVaryings(variant))
+  {
+    text += std::string(qualifier) + " vec3 " + name + ending + ";\n";
+  }
+  return text;
 }
 
 /// Places and what steers them, from the vertices or from a buffer with a line for each primitive.
 const char* const VertexDeclarations = R"(
 uniform vec3 noiseVertexScale;
-out vec3 noisePlaceVSOutput;
 #ifndef NOISE_CELLS
 in vec3 noiseSteering;
-out vec3 noiseSteeringVSOutput;
 #ifdef NOISE_TENSORS
 in vec3 noiseSteering2;
-out vec3 noiseSteering2VSOutput;
 #else
 in vec3 noiseNormal;
 in vec3 noiseBend;
-out vec3 noiseNormalVSOutput;
-out vec3 noiseBendVSOutput;
 #endif
 #endif
 )";
 
 const char* const VertexImplementation = R"(
-  noisePlaceVSOutput = vertexMC.xyz * noiseVertexScale;
-#ifndef NOISE_CELLS
-  noiseSteeringVSOutput = noiseSteering;
-#ifdef NOISE_TENSORS
-  noiseSteering2VSOutput = noiseSteering2;
-#else
-  noiseNormalVSOutput = noiseNormal;
-  noiseBendVSOutput = noiseBend;
-#endif
+  vec3 noisePlace = vertexMC.xyz * noiseVertexScale;
+#ifdef NOISE_AT_VERTICES
+  bool noiseSteered;
+  float noiseValue = NoiseAt(
+    noisePlace, noiseSteering, vec3(0.0), noiseBend, noiseNormal, gl_Position.w, noiseSteered);
+  vec3 noiseOfVertex = vec3(noiseValue, noiseSteered ? 1.0 : 0.0, 0.0);
 #endif
 )";
 
@@ -107,17 +111,12 @@ const char* const VertexImplementation = R"(
 /// fragments read from VSOutput to GSOutput where there is one.
 std::string GetGeometryDeclarations(const ShaderVariant& variant)
 {
-  std::string text = "in vec3 noisePlaceVSOutput[];\nout vec3 noisePlaceGSOutput;\n";
-  for (const std::string& name : GetVaryings(variant))
-  {
-    text += "in vec3 " + name + "VSOutput[];\nout vec3 " + name + "GSOutput;\n";
-  }
-  return text;
+  return DeclareVaryings(variant, "in", "VSOutput[]") + DeclareVaryings(variant, "out", "GSOutput");
 }
 
 std::string GetGeometryImplementation(const ShaderVariant& variant)
 {
-  std::string text = "  noisePlaceGSOutput = noisePlaceVSOutput[i];\n";
+  std::string text;
   for (const std::string& name : GetVaryings(variant))
   {
     text += "  " + name + "GSOutput = " + name + "VSOutput[i];\n";
@@ -126,23 +125,17 @@ std::string GetGeometryImplementation(const ShaderVariant& variant)
 }
 
 const char* const FragmentDeclarations = R"(
-in vec3 noisePlaceVSOutput;
 #ifdef NOISE_CELLS
 uniform samplerBuffer noiseCells;
 uniform int noiseFirstPrimitive;
-#else
-in vec3 noiseSteeringVSOutput;
-#ifdef NOISE_TENSORS
-in vec3 noiseSteering2VSOutput;
-#else
-in vec3 noiseNormalVSOutput;
-in vec3 noiseBendVSOutput;
-#endif
 #endif
 )";
 
 const char* const FragmentNoise = R"(
-  bool noiseSteered = false;
+#ifdef NOISE_AT_VERTICES
+  float noiseValue = noiseOfVertexVSOutput.x;
+  bool noiseSteered = noiseOfVertexVSOutput.y > 0.5;
+#else
 #ifdef NOISE_CELLS
   int noiseLine = 3 * (gl_PrimitiveID + noiseFirstPrimitive);
   vec3 noiseFirst = texelFetch(noiseCells, noiseLine).xyz;
@@ -157,12 +150,14 @@ const char* const FragmentNoise = R"(
   vec3 noiseSecond = noiseNormalVSOutput;
   vec3 noiseThird = noiseBendVSOutput;
 #endif
+  bool noiseSteered;
 #ifdef NOISE_TENSORS
-  float noiseValue = NoiseOfFragment(noisePlaceVSOutput, noiseFirst, noiseSecond, vec3(0.0),
-    vec3(0.0), 1.0 / gl_FragCoord.w, noiseSteered);
+  float noiseValue = NoiseAt(noisePlaceVSOutput, noiseFirst, noiseSecond, vec3(0.0), vec3(0.0),
+    1.0 / gl_FragCoord.w, noiseSteered);
 #else
-  float noiseValue = NoiseOfFragment(noisePlaceVSOutput, noiseFirst, vec3(0.0), noiseThird,
-    noiseSecond, 1.0 / gl_FragCoord.w, noiseSteered);
+  float noiseValue = NoiseAt(noisePlaceVSOutput, noiseFirst, vec3(0.0), noiseThird, noiseSecond,
+    1.0 / gl_FragCoord.w, noiseSteered);
+#endif
 #endif
 )";
 
@@ -194,6 +189,19 @@ void SplitPlace(double place, double size, int& corner, float& rest)
   corner = static_cast<int>(static_cast<std::uint32_t>(std::isfinite(wrapped) ? wrapped : 0.0));
 }
 
+/// Side of a pixel in world units; with a perspective camera: at a distance of 1 along its direction.
+double GetPixelSize(vtkRenderer* renderer)
+{
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const int* size = renderer->GetSize();
+  if (camera->GetParallelProjection())
+  {
+    return 2.0 * camera->GetParallelScale() / std::max(size[1], 1);
+  }
+  const int across = std::max(size[camera->GetUseHorizontalViewAngle() ? 0 : 1], 1);
+  return 2.0 * std::tan(0.5 * vtkMath::RadiansFromDegrees(camera->GetViewAngle())) / across;
+}
+
 void SetUniform3(vtkShaderProgram* program, const char* name, const double (&value)[3])
 {
   if (program->IsUniformUsed(name))
@@ -207,9 +215,17 @@ void AddNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const ShaderOption
   const ShaderVariant& variant)
 {
   const std::string defines = GetDefines(options, variant);
+  const std::string model = SteerableNoiseGlsl;
+  std::string vertexImplementation = VertexImplementation;
+  for (const std::string& name : GetVaryings(variant))
+  {
+    vertexImplementation += "  " + name + "VSOutput = " + name + ";\n";
+  }
   vtkShader* vertex = shaders[vtkShader::Vertex];
-  AddAfter(vertex, "//VTK::PositionVC::Dec", defines + VertexDeclarations);
-  AddAfter(vertex, "//VTK::PositionVC::Impl", VertexImplementation);
+  AddAfter(vertex, "//VTK::PositionVC::Dec",
+    defines + VertexDeclarations + DeclareVaryings(variant, "out", "VSOutput") +
+      (variant.AtVertices ? model : ""));
+  AddAfter(vertex, "//VTK::PositionVC::Impl", vertexImplementation);
   vtkShader* geometry = shaders[vtkShader::Geometry];
   if (!geometry->GetSource().empty())
   {
@@ -218,12 +234,39 @@ void AddNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const ShaderOption
   }
   vtkShader* fragment = shaders[vtkShader::Fragment];
   AddAfter(fragment, "//VTK::PositionVC::Dec",
-    defines + FragmentDeclarations + SteerableNoiseGlsl + SteerableNoiseColorGlsl);
+    defines + FragmentDeclarations + DeclareVaryings(variant, "in", "VSOutput") +
+      (variant.AtVertices ? "" : model) + SteerableNoiseColorGlsl);
   AddAfter(fragment, "//VTK::Color::Impl", std::string(FragmentNoise) + FragmentColor);
   if (options.OutputValue)
   {
     AddAfter(fragment, "//VTK::Light::Impl", FragmentOutputValue);
   }
+}
+
+double GetScale(vtkActor* actor)
+{
+  vtkNew<vtkMatrix4x4> toWorld;
+  actor->GetMatrix(toWorld);
+  return std::cbrt(std::abs(toWorld->Determinant()));
+}
+
+double GetSmallestPixel(vtkRenderer* renderer, vtkActor* actor)
+{
+  vtkCamera* camera = renderer->GetActiveCamera();
+  const double pixel = GetPixelSize(renderer);
+  if (camera->GetParallelProjection())
+  {
+    return pixel;
+  }
+  double bounds[6];
+  actor->GetBounds(bounds);
+  double nearest = 0.0; // along the direction of projection: of each side the nearer
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const double along = camera->GetDirectionOfProjection()[axis];
+    nearest += along * (bounds[2 * axis + (along < 0.0 ? 1 : 0)] - camera->GetPosition()[axis]);
+  }
+  return pixel * std::max(nearest, camera->GetClippingRange()[0]);
 }
 
 void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRenderer* renderer,
@@ -248,7 +291,7 @@ void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRen
   // Where the eye is, from the vertices: they begin at `shift`, in the actor's own axes.
   vtkNew<vtkMatrix4x4> toWorld;
   actor->GetMatrix(toWorld);
-  const double modelScale = std::cbrt(std::abs(toWorld->Determinant()));
+  const double modelScale = GetScale(actor);
   vtkNew<vtkMatrix4x4> toModel;
   vtkMatrix4x4::Invert(toWorld, toModel);
   vtkCamera* camera = renderer->GetActiveCamera();
@@ -260,8 +303,6 @@ void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRen
     inModel[2] - shift[2] };
   SetUniform3(program, "noiseEye", fromShift);
   double view[3] = { 0.0, 0.0, 0.0 };
-  double pixel = 0.0;
-  const int* size = renderer->GetSize();
   if (camera->GetParallelProjection())
   {
     const double* direction = camera->GetDirectionOfProjection();
@@ -269,15 +310,9 @@ void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRen
     toModel->MultiplyPoint(toEye, inModel);
     std::copy(inModel, inModel + 3, view);
     vtkMath::Normalize(view);
-    pixel = 2.0 * camera->GetParallelScale() / std::max(size[1], 1);
-  }
-  else
-  {
-    const int across = std::max(size[camera->GetUseHorizontalViewAngle() ? 0 : 1], 1);
-    pixel = 2.0 * std::tan(0.5 * vtkMath::RadiansFromDegrees(camera->GetViewAngle())) / across;
   }
   SetUniform3(program, "noiseView", view);
-  setFloat("noisePixel", pixel / (modelScale > 0.0 ? modelScale : 1.0));
+  setFloat("noisePixel", GetPixelSize(renderer) / (modelScale > 0.0 ? modelScale : 1.0));
 
   const double inverse[3] = { 1.0 / scale[0], 1.0 / scale[1], 1.0 / scale[2] };
   SetUniform3(program, "noiseVertexScale", inverse);

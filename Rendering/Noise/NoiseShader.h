@@ -49,11 +49,24 @@ struct ShaderVariant
 {
   bool Tensors = false;
   bool PerCell = false;
+  /// Noise is that of the vertices, interpolated: for vectors at points, where cells are as small as pixels.
+  bool AtVertices = false;
 };
 
 /// Adds the noise to the templates of a polydata mapper, before it fills them.
 void AddNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const ShaderOptions& options,
   const ShaderVariant& variant);
+
+inline bool operator==(const ShaderVariant& a, const ShaderVariant& b)
+{
+  return a.Tensors == b.Tensors && a.PerCell == b.PerCell && a.AtVertices == b.AtVertices;
+}
+
+/// World units for a unit of an actor's own.
+double GetScale(vtkActor* actor);
+
+/// Side of a pixel in world units at the place of the actor that is nearest to the eye.
+double GetSmallestPixel(vtkRenderer* renderer, vtkActor* actor);
 
 /// Uniforms that are the same for all blocks. Vertices are (place - `shift`) * `scale`.
 void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRenderer* renderer,

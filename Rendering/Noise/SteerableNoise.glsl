@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Steerable noise of one fragment: the model of Filters/Kernel/SteerableNoiseReference.cxx in GLSL, to be
+// Steerable noise at one place, of a fragment or a vertex: the model of Filters/Kernel/SteerableNoiseReference.cxx in GLSL, to be
 // read beside it; functions have the names of the reference and of MetricTensor.cxx, Surflet.h, LatticeHash.h.
 //
 // What differs is the order of the corners. The reference visits a box; here a loop walks the lattice along
@@ -462,12 +462,12 @@ float SteerableNoise(vec3 place, float size, int level, float pixel, AxialMetric
   return sum * inversesqrt(power);
 }
 
-/// Noise of this fragment; `steered` is false where there is no direction, so no noise.
-float NoiseOfFragment(vec3 place, vec3 steering, vec3 steering2, vec3 bend, vec3 normal,
-  float inverseW, out bool steered)
+/// `steered` is false where there is no direction, so no noise; a pixel there has `w` times the size of noisePixel.
+float NoiseAt(vec3 place, vec3 steering, vec3 steering2, vec3 bend, vec3 normal, float w,
+  out bool steered)
 {
   steered = false;
-  float pixel = noisePixel * inverseW;
+  float pixel = noisePixel * w;
   float magnitude = length(steering);
 #ifdef NOISE_TENSORS
   magnitude = sqrt(dot(steering, steering) + 2.0 * dot(steering2, steering2));

@@ -148,8 +148,9 @@ public:
   vtkNew<vtkRenderWindow> Window;
 };
 
-/// A wavy sheet of triangles with swirling vectors, tensors of them, and vectors on cells; 12 units apart.
-vtkSmartPointer<vtkPolyData> MakeSheet(const std::array<double, 3>& from, double slope, int side = 20)
+/// A wavy sheet of triangles with swirling vectors, tensors of them, and vectors on cells; 12 units apart. `turns`: how
+/// much they turn.
+vtkSmartPointer<vtkPolyData> MakeSheet(const std::array<double, 3>& from, double slope, int side = 20, double turns = 1.0)
 {
   auto sheet = vtkSmartPointer<vtkPolyData>::New();
   vtkNew<vtkPoints> points;
@@ -168,8 +169,8 @@ vtkSmartPointer<vtkPolyData> MakeSheet(const std::array<double, 3>& from, double
       const double y = 12.0 * j;
       points->InsertNextPoint(
         from[0] + x, from[1] + y, from[2] + slope * x + 3.0 * std::sin(0.02 * y));
-      const double u = 1.0 + std::sin(0.013 * y + 0.4);
-      const double v = std::cos(0.017 * x) - 0.2;
+      const double u = 1.0 + std::sin(0.013 * turns * y + 0.4);
+      const double v = std::cos(0.017 * turns * x) - 0.2;
       const double w = slope * u;
       vectors->InsertNextTuple3(2.5 * u, 2.5 * v, 2.5 * w);
       const double t[6] = { u * u + 0.1, v * v + 0.2, w * w, u * v, v * w, u * w };
@@ -467,6 +468,71 @@ TEST(SteerableNoiseMapper, EveryVariantOfTheShaderDraws)
     const double mean = sum / pixels.size();
     EXPECT_GT(std::sqrt(squares / pixels.size() - mean * mean), 5.0) << variant;
     EXPECT_EQ(messages.Get(), "") << variant;
+  }
+}
+
+/// Where cells are as small as pixels their vertices are enough, and nobody sees it; a large cell far out of the
+/// view has all of it drawn by fragments.
+TEST(SteerableNoiseMapper, CellsAsSmallAsPixelsAreEvaluatedAtTheirVertices)
+{
+  const auto fine = MakeSheet({ 3.0, -5.0, 2.0 }, 0.1, 150, 0.1);
+  const auto large = MakeSheet({ 0.0, 0.0, 0.0 }, 0.1, 2);
+  for (vtkIdType i = 0; i < large->GetNumberOfPoints(); ++i)
+  {
+    const double* place = large->GetPoint(i);
+    large->GetPoints()->SetPoint(i, 1e4 + 1e2 * place[0], 1e2 * place[1], place[2]);
+  }
+  vtkNew<vtkMultiBlockDataSet> both;
+  both->SetBlock(0, fine);
+  both->SetBlock(1, large);
+  vtkNew<vtkMultiBlockDataSet> alone;
+  alone->SetBlock(0, fine);
+
+  // Root mean square of the difference between the two.
+  const auto differ = [&](double pixel, double feature, bool parallel, bool edges)
+  {
+    std::vector<double> noise[2];
+    for (vtkMultiBlockDataSet* data : { alone.Get(), both.Get() })
+    {
+      Messages messages;
+      Scene scene(data);
+      scene.Mapper->SetFeatureSize(feature);
+      scene.Actor->GetProperty()->SetEdgeVisibility(edges);
+      scene.LookDown(900.0, 900.0, Size * pixel);
+      if (!parallel)
+      {
+        vtkCamera* camera = scene.Renderer->GetActiveCamera();
+        camera->ParallelProjectionOff();
+        camera->SetPosition(
+          900.0, 900.0, 0.5 * Size * pixel / std::tan(vtkMath::RadiansFromDegrees(15.0)));
+        scene.Renderer->ResetCameraClippingRange();
+      }
+      noise[data == both] = scene.RenderNoise();
+      EXPECT_EQ(messages.Get(), "");
+    }
+    double squares = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < noise[0].size(); ++i)
+    {
+      if (!std::isnan(noise[0][i]) && !std::isnan(noise[1][i]))
+      {
+        squares += (noise[0][i] - noise[1][i]) * (noise[0][i] - noise[1][i]);
+        count += 1;
+      }
+    }
+    EXPECT_GT(count, Size * Size / 3);
+    return std::sqrt(squares / count);
+  };
+  for (const bool parallel : { true, false })
+  {
+    for (const bool edges : { false, true })
+    {
+      const double difference = differ(10.0, 130.0, parallel, edges);
+      EXPECT_GT(difference, 0.01) << parallel << edges;
+      EXPECT_LT(difference, 0.1) << parallel << edges;
+    }
+    EXPECT_LT(differ(5.0, 130.0, parallel, false), Tolerance) << "cells of three pixels";
+    EXPECT_LT(differ(10.0, 110.0, parallel, false), Tolerance) << "small features";
   }
 }
 

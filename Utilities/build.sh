@@ -16,7 +16,7 @@ install_packages() {
   case $version in
     12 | 13)
       packages+=(libopenmpi-dev libdouble-conversion-dev libpython3-dev
-        libx11-dev libglew-dev libfreetype-dev)
+        libx11-dev libglew-dev libfreetype-dev qttools5-dev qtxmlpatterns5-dev-tools)
       ;;
     *)
       # ParaView 6.1 uses the system's VTK.

@@ -96,7 +96,7 @@ copy_tree() {
   mkdir -p "$home/project" &&
     (cd "$root" && git -c safe.directory="$root" ls-files -z | tar --null --files-from=- -c) |
     tar -x --no-same-owner -C "$home/project" &&
-    { [ ! -d "$root/../shared" ] || cp -r "$root/../shared" "$home/shared"; }
+    { [ ! -d "$root/../shared" ] || cp -rL "$root/../shared" "$home/shared"; }
 }
 
 # A user who may use sudo, and finds links and one package missing as the first user of a machine would.

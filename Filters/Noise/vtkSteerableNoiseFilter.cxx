@@ -906,7 +906,7 @@ int vtkSteerableNoiseFilter::RequestData(
   Extremes extremes;
   for (const Block& block : blocks)
   {
-    extremes.Add(block, this->FeatureSize <= 0.0);
+    extremes.Add(block, this->FeatureSize == 0.0);
   }
   extremes.Reduce(this->Controller);
   const bool needsMagnitude = this->IsSteered() && this->StrengthMode == MAGNITUDE &&
@@ -921,7 +921,7 @@ int vtkSteerableNoiseFilter::RequestData(
     internals.Report(extremes, lengths, parameters, composite != nullptr);
     return 1;
   }
-  if (this->FeatureSize <= 0.0)
+  if (this->FeatureSize == 0.0)
   {
     parameters.FeatureSize = extremes.Bounds.GetFeatureSize(extremes.GetSampleSpacing());
   }

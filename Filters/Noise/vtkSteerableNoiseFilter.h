@@ -162,9 +162,9 @@ public:
    * Side of a lattice cell in world units: the width of a streak is about one of it. 0, the default:
    * 1/100 of the diagonal of the bounds of all blocks on all ranks, at most 1/8 of their second longest
    * side, but not finer than 4 distances of neighbouring samples; rounded to a power of the fourth root
-   * of 2, so that it does not change with every step of a series. Negative values are clamped to 0.
+   * of 2, so that it does not change with every step of a series. Negative and NaN: an error.
    */
-  vtkSetClampMacro(FeatureSize, double, 0.0, VTK_DOUBLE_MAX);
+  vtkSetMacro(FeatureSize, double);
   vtkGetMacro(FeatureSize, double);
   ///@}
 

@@ -1755,7 +1755,6 @@ std::vector<Case> BadInput()
 
   // Each property out of its range is clamped, and the noise stays finite.
   const std::pair<const char*, std::function<void(F)>> clamped[] = {
-    { "FeatureSizeNegative", [](F f) { f->SetFeatureSize(-1.0); } },
     { "StreakLengthZero", [](F f) { f->SetStreakLength(0.0); } },
     { "StreakLengthHuge", [](F f) { f->SetStreakLength(1e9); } },
     { "QualityNegative", [](F f) { f->SetQuality(-3); } },
@@ -1809,6 +1808,7 @@ std::vector<Case> BadInput()
   {
     add(entry.first, image, Fine, entry.second);
   }
+  add("FeatureSizeNegative", image, Failed, [](F f) { f->SetFeatureSize(-1.0); });
   add("FeatureSizeTiny", image, Warned, [](F f) { f->SetFeatureSize(1e-9); });
   add("OctavesHuge", image, Warned, [](F f) { f->SetOctaves(1000); });
   // NaN passes a clamp.

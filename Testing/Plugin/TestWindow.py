@@ -1,5 +1,7 @@
-"""ParaView's window: runs a script; then is used with keys only, as by who looks for LIC, and seen in numbers."""
+"""ParaView's window: runs a script; then is used with keys only, as by who looks for LIC, and seen in numbers; then its
+panel and its Play button with the events of ParaView's own tests."""
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -111,6 +113,55 @@ def use_by_keys(environment, folder):
         paraview.wait()
 
 
+def use_panel(environment, folder):
+    """Reset takes a change back; Play goes through a period's steps; a negative size is refused in one sentence."""
+    panel = "pqClientMainWindow/propertiesDock/propertiesPanel/"
+    properties = panel + "scrollArea/qt_scrollarea_viewport/scrollAreaWidgetContents/PropertiesFrame/ProxyPanel/"
+    number = "/DoubleRangeWidget/DoubleLineEdit"
+    state = os.path.join(folder, "played.pvsm")
+    events = (
+        (panel + "Accept", "activate", ""),
+        ("pqClientMainWindow/menubar/menuFilters/Alphabetical", "activate", "SteerableNoise"),
+        (properties + "TimePeriod/DoubleLineEdit0", "set_string", "2"),
+        (panel + "Accept", "activate", ""),
+        (properties + "StreakLength" + number, "set_string", "3"),
+        (panel + "Reset", "activate", ""),
+        ("pqClientMainWindow/VCRToolbar/actionVCRPlay", "activate", ""),
+        ("pqClientMainWindow/menubar/menu_File", "activate", "actionFileSaveServerState"),
+        ("pqClientMainWindow/FileSaveServerStateDialog", "filesSelected", state),
+        (properties + "FeatureSize" + number, "set_string", "-5"),
+        (panel + "Accept", "activate", ""),
+    )
+    script = os.path.join(folder, "events.xml")
+    with open(script, "w") as file:
+        file.write('<?xml version="1.0" ?>\n<pqevents>\n')
+        for event in events:
+            file.write('<pqevent object="%s" command="%s" arguments="%s" />\n' % event)
+        file.write("</pqevents>\n")
+    environment = dict(environment, PV_PLUGIN_PATH=os.path.dirname(os.path.dirname(pt.PLUGIN)))
+    run = subprocess.run(
+        [sys.argv[1], "--data=" + pt.WAKE, "--test-script=" + script, "--test-directory=" + folder, "--exit"],
+        env=environment, timeout=240, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    pt.check(run.returncode == 0, "the events are played")
+    if run.returncode != 0:
+        print(run.stdout)
+        return
+    saved = open(state).read()
+
+    def value(name):
+        found = re.search(r'<Property name="%s"[^>]*>\s*<Element index="0" value="([^"]*)"' % name, saved)
+        return float(found.group(1))
+
+    pt.check(value("StreakLength") == 6, "Reset: StreakLength is %g" % value("StreakLength"))
+    pt.check(value("TimePeriod") == 2, "Apply: TimePeriod is %g" % value("TimePeriod"))
+    # 24 steps, of which the last is not the first of the next period.
+    pt.check(abs(value("AnimationTime") - 2 * 23 / 24) < 1e-9, "Play ends at %g" % value("AnimationTime"))
+    # With each execution, and nothing else with it.
+    errors = [line for line in run.stdout.splitlines() if "ERR|" in line]
+    refused = [line for line in errors if "FeatureSize is -5" in line]
+    pt.check(refused and refused == errors, "a negative size is refused in one sentence: %r" % errors)
+
+
 with tempfile.TemporaryDirectory() as folder:
     picture = os.path.join(pt.OUTPUT, "window.png")
     done = os.path.join(folder, "done")
@@ -135,4 +186,5 @@ with tempfile.TemporaryDirectory() as folder:
         pt.check(low < -1.5 and high > 1.5, "noise in the window")
         pt.check(os.path.getsize(picture) > 5000, "a picture of the window")
     use_by_keys(environment, folder)
+    use_panel(environment, folder)
 pt.finish()

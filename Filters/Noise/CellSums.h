@@ -96,16 +96,14 @@ public:
   /// Appends a share. A value that is not finite is none.
   void Append(Shares& shares, vtkIdType point, const Eigen::Vector3d& value) const
   {
-    const Eigen::Vector3d steps = value * this->StepsPerUnit;
+    constexpr double most = INT32_MAX;
+    const Eigen::Array3d steps = value.array() * this->StepsPerUnit;
     if (steps.allFinite())
     {
-      shares.push_back({ point,
-        steps.array()
-          .round()
-          .max(-double(INT32_MAX))
-          .min(double(INT32_MAX))
-          .matrix()
-          .cast<int>() });
+      // Rounds to the nearest in one instruction, as the conversion of something larger than 2^52 does.
+      constexpr double rounding = 6755399441055744.0;
+      const Eigen::Array3d whole = (steps.max(-most).min(most) + rounding) - rounding;
+      shares.push_back({ point, whole.matrix().cast<int>() });
     }
   }
 
@@ -118,9 +116,12 @@ public:
   void AddCells(bool lines, GetShares&& getShares)
   {
     // So many that threads are worth it, so few that their shares take little memory.
-    constexpr vtkIdType chunkSize = 128;
-    constexpr vtkIdType chunksPerBatch = 32;
+    constexpr vtkIdType chunkSize = 512;
+    constexpr vtkIdType chunksPerBatch = 64;
     const vtkIdType cells = this->DataSet->GetNumberOfCells();
+    const auto points = static_cast<vtkIdType>(this->Counts.size());
+    const vtkIdType threads =
+      std::clamp(vtkSMPTools::GetEstimatedNumberOfThreads(), 1, mostThreadsThatAdd);
     std::vector<Shares> chunks(chunksPerBatch);
     for (vtkIdType first = 0; first < cells; first += chunkSize * chunksPerBatch)
     {
@@ -140,28 +141,49 @@ public:
             }
           }
         });
-      for (vtkIdType chunk = 0; chunk < used; ++chunk)
-      {
-        for (const Share& share : chunks[chunk])
+      // Each thread reads all shares, in the order of the cells, and adds those of its own points.
+      vtkSMPTools::For(0, threads, 1,
+        [&](vtkIdType begin, vtkIdType stop)
         {
-          this->Add(share, lines);
-        }
-      }
+          const vtkIdType from = points * begin / threads;
+          const vtkIdType to = points * stop / threads;
+          for (vtkIdType chunk = 0; chunk < used; ++chunk)
+          {
+            for (const Share& share : chunks[chunk])
+            {
+              if (share.Point >= from && share.Point < to)
+              {
+                this->Add(share, lines);
+              }
+            }
+          }
+        });
     }
   }
 
   /// Sums become means.
   void Finish()
   {
-    for (std::size_t i = 0; i < 3 * this->Counts.size(); ++i)
-    {
-      const double count = std::max<double>(1.0, this->Counts[i / 3]);
-      const std::int32_t sum = this->Sums[i];
-      this->Means[i] = static_cast<float>(sum / (count * this->StepsPerUnit));
-    }
+    vtkSMPTools::For(0, static_cast<vtkIdType>(this->Counts.size()), 16384,
+      [this](vtkIdType begin, vtkIdType end)
+      {
+        for (vtkIdType point = begin; point < end; ++point)
+        {
+          const double count = std::max<double>(1.0, this->Counts[point]);
+          const double unit = 1.0 / (count * this->StepsPerUnit);
+          for (vtkIdType i = 3 * point; i < 3 * point + 3; ++i)
+          {
+            const std::int32_t sum = this->Sums[i];
+            this->Means[i] = static_cast<float>(sum * unit);
+          }
+        }
+      });
   }
 
 private:
+  /// Reading what others add costs more than it saves then.
+  static constexpr int mostThreadsThatAdd = 8;
+
   void Add(const Share& share, bool lines)
   {
     Eigen::Map<Eigen::Vector3i> sum(this->Sums + 3 * share.Point);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseCopies.h"
 
+#include "PointPlaces.h"
+
 #include "vtkDataSet.h"
 #include "vtkFloatArray.h"
 #include "vtkSMPTools.h"
@@ -26,11 +28,11 @@ using Key = std::pair<std::uint64_t, vtkIdType>;
 CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hidden)
 {
   const vtkIdType count = dataset->GetNumberOfPoints();
+  const PointPlaces places(dataset);
   double largest = 0.0;
   for (vtkIdType point = 0; point < count; ++point)
   {
-    Eigen::Vector3d place;
-    dataset->GetPoint(point, place.data());
+    const Eigen::Vector3d place = places(point);
     if (place.allFinite() && !hidden.HasPoint(point))
     {
       largest = std::max(largest, place.cwiseAbs().maxCoeff());
@@ -44,8 +46,7 @@ CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hid
   const double unit = std::ldexp(1.0, std::ilogb(largest) - 22);
   const auto hashOf = [&](vtkIdType point, std::uint64_t& hash)
   {
-    Eigen::Vector3d place;
-    dataset->GetPoint(point, place.data());
+    const Eigen::Vector3d place = places(point);
     if (!place.allFinite() || hidden.HasPoint(point))
     {
       return false;

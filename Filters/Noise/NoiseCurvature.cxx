@@ -5,6 +5,7 @@
 #include "CellSums.h"
 #include "NoiseCopies.h"
 #include "NoiseThreads.h"
+#include "PointPlaces.h"
 
 #include "vtkSMPTools.h"
 
@@ -91,16 +92,60 @@ private:
   Matrix3d Products = Matrix3d::Zero();
 };
 
+/// Of a cell that has no more points than its dimension needs: the gradient that goes through all of them. False where
+/// they are too close to a line or a plane.
+bool GetLinearGradient(
+  const Vector3d* places, const Vector3d* directions, int dimension, Matrix3d& gradient)
+{
+  // As GradientFit: a millionth of the longest is still a distance.
+  constexpr double thinnest = 1e-12;
+  const Vector3d a = places[1] - places[0];
+  const Vector3d b = places[2] - places[0];
+  const Vector3d du = directions[1] - directions[0];
+  const Vector3d dv = directions[2] - directions[0];
+  const Vector3d normal = a.cross(b);
+  if (dimension == 2)
+  {
+    const double squared = normal.squaredNorm();
+    const double longest = std::max(a.squaredNorm(), b.squaredNorm());
+    if (!(squared > thinnest * longest * longest) || !std::isfinite(squared))
+    {
+      return false;
+    }
+    // The gradients of the two coordinates that are 1 at one corner and 0 at the others.
+    gradient = (du * b.cross(normal).transpose() + dv * normal.cross(a).transpose()) / squared;
+    return true;
+  }
+  const Vector3d c = places[3] - places[0];
+  const Vector3d dw = directions[3] - directions[0];
+  const double volume = normal.dot(c);
+  const double longest = std::max({ a.squaredNorm(), b.squaredNorm(), c.squaredNorm() });
+  if (!(volume * volume > thinnest * longest * longest * longest) || !std::isfinite(volume * volume))
+  {
+    return false;
+  }
+  gradient = (du * b.cross(c).transpose() + dv * c.cross(a).transpose() + dw * normal.transpose()) / volume;
+  return true;
+}
+
 /// Gradient of the points [first, first + count) of a cell.
 Matrix3d GetGradient(const CellPoints& cell, std::size_t first, std::size_t count, int dimension)
 {
+  Matrix3d gradient;
+  if (dimension > 1 && count == static_cast<std::size_t>(dimension) + 1 &&
+    GetLinearGradient(cell.Places.data() + first, cell.Directions.data() + first, dimension, gradient))
+  {
+    return gradient;
+  }
   Vector3d meanPlace = Vector3d::Zero();
   Vector3d meanDirection = Vector3d::Zero();
   for (std::size_t i = first; i < first + count; ++i)
   {
-    meanPlace += cell.Places[i] / static_cast<double>(count);
-    meanDirection += cell.Directions[i] / static_cast<double>(count);
+    meanPlace += cell.Places[i];
+    meanDirection += cell.Directions[i];
   }
+  meanPlace /= static_cast<double>(count);
+  meanDirection /= static_cast<double>(count);
   GradientFit fit;
   for (std::size_t i = first; i < first + count; ++i)
   {
@@ -120,8 +165,8 @@ std::size_t GetPartSize(int cellType)
  * first; `getDirection(point)` gives 0 where there is none. Such points are left out, or `keepAll`.
  */
 template <class Get>
-void ReadCell(vtkDataSet* dataset, vtkIdType id, Vector3d side, bool keepAll, vtkIdList* ids,
-  CellPoints& cell, Get&& getDirection)
+void ReadCell(vtkDataSet* dataset, const PointPlaces& places, vtkIdType id, Vector3d side, bool keepAll,
+  vtkIdList* ids, CellPoints& cell, Get&& getDirection)
 {
   cell.Ids.clear();
   cell.Places.clear();
@@ -130,8 +175,7 @@ void ReadCell(vtkDataSet* dataset, vtkIdType id, Vector3d side, bool keepAll, vt
   for (const vtkIdType point : *ids)
   {
     Vector3d u = getDirection(point);
-    Vector3d place;
-    dataset->GetPoint(point, place.data());
+    const Vector3d place = places(point);
     if (u.isZero(0.0) || !place.allFinite())
     {
       if (!keepAll)
@@ -154,7 +198,18 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
 {
   const CellDimensions dimensions(dataset);
   const CoincidentPoints copies(dataset, hidden); // before the arrays: it takes memory for a while
-  auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfPoints());
+  const PointPlaces places(dataset);
+  const vtkIdType count = dataset->GetNumberOfPoints();
+  std::vector<Vector3d> directions(static_cast<std::size_t>(count));
+  vtkSMPTools::For(0, count, 4096,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType point = begin; point < end; ++point)
+      {
+        directions[static_cast<std::size_t>(point)] = GetDirection(vectors, point);
+      }
+    });
+  auto curvature = NewOutputArray("Curvature", 3, count);
   // The noise takes bends up to 1 / cellSize: room for 127 cells of such, and finer than it sees.
   PointSums sums(dataset, curvature, cellSize * (1 << 24));
   sums.AddCells(false,
@@ -168,8 +223,8 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
       }
       thread_local CellPoints cell;
       const std::size_t part = GetPartSize(type);
-      ReadCell(dataset, id, Vector3d::Zero(), part > 0, ids, cell,
-        [&](vtkIdType point) { return GetDirection(vectors, point); });
+      ReadCell(dataset, places, id, Vector3d::Zero(), part > 0, ids, cell,
+        [&](vtkIdType point) -> const Vector3d& { return directions[static_cast<std::size_t>(point)]; });
       const std::size_t size = part > 0 ? part : std::max<std::size_t>(cell.Ids.size(), 2);
       for (std::size_t first = 0; first + size <= cell.Ids.size(); ++first)
       {
@@ -197,6 +252,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
 {
   const CellDimensions dimensions(dataset);
   const CoincidentPoints copies(dataset, hidden);
+  const PointPlaces places(dataset);
   auto points = NewOutputArray("Directions", 3, dataset->GetNumberOfPoints());
   PointSums sums(dataset, points, DirectionSteps);
   sums.AddCells(true,
@@ -223,7 +279,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
         Vector3d result = Vector3d::Zero();
         if (!u.isZero(0.0))
         {
-          ReadCell(dataset, id, u, false, ids, cell,
+          ReadCell(dataset, places, id, u, false, ids, cell,
             [&](vtkIdType point) -> Vector3d {
               return Eigen::Map<const Eigen::Vector3f>(points->GetPointer(3 * point))
                 .cast<double>();

@@ -8,6 +8,7 @@
 #include "NoiseCopies.h"
 #include "NoiseCurvature.h"
 #include "NoiseThreads.h"
+#include "PointPlaces.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -42,7 +43,7 @@ namespace noise
 namespace
 {
 /// Unit normal of the plane through points (a strip's first three, a curved cell's corners), 0 if there is none.
-Eigen::Vector3d GetNormal(vtkDataSet* dataset, int cellType, vtkIdList* ids)
+Eigen::Vector3d GetNormal(const PointPlaces& places, int cellType, vtkIdList* ids)
 {
   const auto corners = [&]() -> vtkIdType
   {
@@ -75,8 +76,7 @@ Eigen::Vector3d GetNormal(vtkDataSet* dataset, int cellType, vtkIdList* ids)
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   for (vtkIdType i = 0; i < count; ++i)
   {
-    Eigen::Vector3d place;
-    dataset->GetPoint(getId(i), place.data());
+    const Eigen::Vector3d place = places(getId(i));
     if (i == 0)
     {
       origin = before = place;
@@ -270,6 +270,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
   {
     return nullptr;
   }
+  const PointPlaces places(this->DataSet);
   auto normals = NewOutputArray("Normals", 3, this->GetNumberOfSamples());
   // The dataset's own normals where it has them; their sense does not matter.
   vtkDataSetAttributes* attributes = this->Cells
@@ -315,7 +316,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
             if (normal.isZero(0.0))
             {
               this->DataSet->GetCellPoints(cell, ids);
-              normal = GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
+              normal = GetNormal(places, this->DataSet->GetCellType(cell), ids);
             }
           }
           if (own && !normal.isZero(0.0))
@@ -337,7 +338,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
       {
         this->DataSet->GetCellPoints(cell, ids);
         const Eigen::Vector3d flat =
-          GetNormal(this->DataSet, this->DataSet->GetCellType(cell), ids);
+          GetNormal(places, this->DataSet->GetCellType(cell), ids);
         CurvedCell* curved = getCurved(cell);
         for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
         {

@@ -42,6 +42,12 @@ void CommonBounds::Add(const double (&bounds)[6])
   }
 }
 
+void CommonBounds::Add(const CommonBounds& other)
+{
+  std::transform(this->Values, this->Values + 6, other.Values, this->Values,
+    [](double a, double b) { return std::min(a, b); });
+}
+
 void CommonBounds::Add(vtkDataSet* dataset, const HiddenSamples& hidden)
 {
   if (dataset->GetNumberOfPoints() == 0)

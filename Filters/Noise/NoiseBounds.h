@@ -33,6 +33,7 @@ public:
   CommonBounds();
 
   void Add(const double (&bounds)[6]);
+  void Add(const CommonBounds& other);
   /// Bounds of the points that are not hidden.
   void Add(vtkDataSet* dataset, const HiddenSamples& hidden);
 

@@ -100,13 +100,14 @@ bool IsGhostCell(vtkUnsignedCharArray* ghosts, vtkIdType cell)
 
 Samples::Samples(
   vtkDataSet* dataset, vtkDataArray* array, bool cells, const Shape& shape, int magnification,
-  const Plane& plane, double limit)
+  const Plane& plane, double limit, SampleFields* kept)
   : DataSet(dataset)
   , Array(array)
   , Cells(cells)
   , InPlane(plane)
   , TakenAs(shape)
   , Hidden(dataset)
+  , Fields(kept ? kept : &this->Own)
 {
   // Before anything looks at neighbours; where nothing steers nothing is too long.
   this->SetLeftOut(array ? limit : std::numeric_limits<double>::infinity());
@@ -247,18 +248,19 @@ void Samples::SetPoints()
   {
     this->Positions = MakePositionReader(this->DataSet);
   }
-  if (this->Array && IsVector(this->Array->GetNumberOfComponents()))
+  if (this->Array && IsVector(this->Array->GetNumberOfComponents()) && !this->Fields->AreNormalsKnown)
   {
     WithThreads(
       [&]
       {
-        this->Normals =
+        this->Fields->Normals =
           this->TakenAs.Slab >= 0 ? this->ComputeSlabNormals() : this->ComputeNormals();
       });
+    this->Fields->AreNormalsKnown = true;
   }
-  if (this->Normals)
+  if (this->Fields->Normals)
   {
-    this->NormalReader = MakeVectorReader(this->Normals, WorldAxes, false);
+    this->NormalReader = MakeVectorReader(this->Fields->Normals, WorldAxes, false);
     this->Field.Normals = this->NormalReader.get();
   }
 }
@@ -492,29 +494,36 @@ void Samples::ComputeCurvature(double featureSize)
   {
     return;
   }
-  int dimensions[3];
-  if (GetDimensions(this->DataSet, dimensions))
+  // The power of two below, so that most changes of the size leave the curvature as it is.
+  const double size = std::ldexp(1.0, std::ilogb(featureSize));
+  if (this->Fields->CurvatureSize != size)
   {
-    for (int& samples : dimensions)
-    {
-      samples = this->Cells ? std::max(samples - 1, 1) : samples;
-    }
-    std::function<bool(int, vtkIdType)> cellsMeet;
-    if (this->Cells)
-    {
-      cellsMeet = [this](int axis, vtkIdType cell) { return this->DoCellsMeet(axis, cell); };
-    }
-    this->Curvature = ComputeStreamlineCurvature(
-      dimensions, *this->Positions, *this->Field.Vectors, this->LeftOut, cellsMeet);
+    this->Fields->Curvature = this->FindCurvature(size);
+    this->Fields->CurvatureSize = size;
   }
-  else
+  this->CurvatureReader = MakeVectorReader(this->Fields->Curvature, WorldAxes, false);
+  this->Field.Curvature = this->CurvatureReader.get();
+}
+
+vtkSmartPointer<vtkFloatArray> Samples::FindCurvature(double featureSize) const
+{
+  int dimensions[3];
+  if (!GetDimensions(this->DataSet, dimensions))
   {
-    this->Curvature =
-      ComputeStreamlineCurvature(
+    return ComputeStreamlineCurvature(
       this->DataSet, *this->Field.Vectors, this->Cells, this->Hidden, featureSize);
   }
-  this->CurvatureReader = MakeVectorReader(this->Curvature, WorldAxes, false);
-  this->Field.Curvature = this->CurvatureReader.get();
+  for (int& samples : dimensions)
+  {
+    samples = this->Cells ? std::max(samples - 1, 1) : samples;
+  }
+  std::function<bool(int, vtkIdType)> cellsMeet;
+  if (this->Cells)
+  {
+    cellsMeet = [this](int axis, vtkIdType cell) { return this->DoCellsMeet(axis, cell); };
+  }
+  return ComputeStreamlineCurvature(
+    dimensions, *this->Positions, *this->Field.Vectors, this->LeftOut, cellsMeet);
 }
 
 steerable::EvaluationCounts Samples::Evaluate(
@@ -861,5 +870,15 @@ void SampleSpacing::Add(
       add(SpacingOf(places.data(), places.size(), dimension, centers));
     }
   }
+}
+
+void SampleSpacing::Add(const SampleSpacing& other)
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    this->Largest[axis] = std::max(this->Largest[axis], other.Largest[axis]);
+    this->Sum[axis] += other.Sum[axis];
+  }
+  this->Count += other.Count;
 }
 } // namespace noise

@@ -25,6 +25,19 @@ class vtkImageData;
 
 namespace noise
 {
+/**
+ * What samples off images know of their geometry and field, to be kept from one update to the next while both stay
+ * the same: 24 bytes for each sample on a surface, 12 in a volume.
+ */
+struct SampleFields
+{
+  bool AreNormalsKnown = false;
+  vtkSmartPointer<vtkFloatArray> Normals;
+  /// The FeatureSize whose steps the curvature has; 0: there is none yet.
+  double CurvatureSize = 0.0;
+  vtkSmartPointer<vtkFloatArray> Curvature;
+};
+
 class Samples
 {
 public:
@@ -32,10 +45,11 @@ public:
    * `array`: what steers; null: nothing does. `cells`: it belongs to the cells. `shape` as
    * CommonShape has it. `magnification`: samples of an image
    * for each one that its vectors were interpolated from. `plane`: where two components lie, but flat
-   * images have them along their own axes. Vectors longer than `limit` are left out.
+   * images have them along their own axes. Vectors longer than `limit` are left out. `kept`: what is known is
+   * taken from there, and what is found left there; null: nothing.
    */
   Samples(vtkDataSet* dataset, vtkDataArray* array, bool cells, const Shape& shape, int magnification, const Plane& plane = WorldPlane,
-    double limit = std::numeric_limits<double>::infinity());
+    double limit = std::numeric_limits<double>::infinity(), SampleFields* kept = nullptr);
   ~Samples();
 
   vtkIdType GetNumberOfSamples() const;
@@ -45,9 +59,9 @@ public:
   std::size_t GetNumberOfParts() const;
 
   /// Unit normals of samples on surfaces, 0 off them; null where there are none.
-  vtkFloatArray* GetNormals() const { return this->Normals; }
+  vtkFloatArray* GetNormals() const { return this->Fields->Normals; }
   /// What ComputeCurvature found; null before, for tensors and for images.
-  vtkFloatArray* GetCurvature() const { return this->Curvature; }
+  vtkFloatArray* GetCurvature() const { return this->Fields->Curvature; }
 
   /// Tensors times `factor` are the metric itself; without effect on vectors.
   void TakeTensorsAsMetrics(double factor);
@@ -85,6 +99,7 @@ private:
   /// Unit normals of samples on cells of dimension 2, 0 for the others; null if all are.
   vtkSmartPointer<vtkFloatArray> ComputeNormals() const;
   vtkSmartPointer<vtkFloatArray> ComputeSlabNormals() const;
+  vtkSmartPointer<vtkFloatArray> FindCurvature(double featureSize) const;
 
   vtkDataSet* DataSet;
   vtkDataArray* Array;
@@ -103,8 +118,8 @@ private:
   std::unique_ptr<steerable::TupleReader<float>> NormalReader;
   std::unique_ptr<steerable::TupleReader<float>> CurvatureReader;
   std::unique_ptr<steerable::TupleReader<double>> Positions;
-  vtkSmartPointer<vtkFloatArray> Normals;
-  vtkSmartPointer<vtkFloatArray> Curvature;
+  SampleFields Own;
+  SampleFields* Fields;
   vtkSmartPointer<vtkDataArray> CellCenters;
 };
 
@@ -127,6 +142,8 @@ struct SampleSpacing
    */
   void Add(vtkDataSet* dataset, bool centers, int slab, const HiddenSamples& hidden,
     vtkIdType cellsAtMost);
+
+  void Add(const SampleSpacing& other);
 };
 } // namespace noise
 

@@ -38,6 +38,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
@@ -47,10 +48,15 @@ vtkCxxSetObjectMacro(vtkSteerableNoiseFilter, Controller, vtkMultiProcessControl
 
 namespace
 {
+struct KeptBlock;
+
 /// A dataset of the output that gets noise, and the array that steers it.
 struct Block
 {
   vtkDataSet* DataSet = nullptr;
+  /// The input's, of which it is a shallow copy or a magnified image.
+  vtkDataObject* Source = nullptr;
+  KeptBlock* Known = nullptr;
   vtkDataArray* Array = nullptr;
   bool Cells = false;
   noise::ShapeArrays ShapeArrays = {};
@@ -78,6 +84,12 @@ struct Extremes
     const noise::HiddenSamples hidden(block.DataSet);
     this->Bounds.Add(block.DataSet, hidden);
     this->Spacing.Add(block.DataSet, block.Cells, block.Shape.Slab, hidden, exact ? 1000000 : 10000);
+  }
+
+  void Add(const Extremes& other)
+  {
+    this->Bounds.Add(other.Bounds);
+    this->Spacing.Add(other.Spacing);
   }
 
   void Reduce(vtkMultiProcessController* controller)
@@ -138,6 +150,48 @@ struct Extremes
   double GetSmallestSize() const
   {
     return noise::GetSmallestFeatureSize(this->GetSampleSpacing());
+  }
+};
+
+/// What was found out about a dataset of the input, good as long as what it depends on is the same.
+struct KeptBlock
+{
+  vtkMTimeType Time = 0;
+  bool Cells = false;
+  int Slab = -1;
+
+  bool AreExtremesKnown = false;
+  bool AreExtremesExact = false;
+  Extremes Own;
+
+  /// The array is only compared, never used: it may be gone.
+  const vtkDataArray* Array = nullptr;
+  noise::Plane Plane = noise::WorldPlane;
+  double Limit = 0.0;
+  noise::SampleFields Fields;
+
+  const Extremes& GetExtremes(const Block& block, bool exact)
+  {
+    if (!this->AreExtremesKnown || this->AreExtremesExact != exact)
+    {
+      this->Own = Extremes();
+      this->Own.Add(block, exact);
+      this->AreExtremesKnown = true;
+      this->AreExtremesExact = exact;
+    }
+    return this->Own;
+  }
+
+  noise::SampleFields* GetFields(const Block& block, const noise::Plane& plane, double limit)
+  {
+    if (this->Array != block.Array || this->Plane != plane || this->Limit != limit)
+    {
+      this->Fields = noise::SampleFields();
+      this->Array = block.Array;
+      this->Plane = plane;
+      this->Limit = limit;
+    }
+    return &this->Fields;
   }
 };
 
@@ -315,6 +369,37 @@ private:
 };
 } // namespace
 
+/// By datasets of the input, which are only compared: they may be gone.
+struct vtkSteerableNoiseFilter::KeptBlocks
+{
+  std::map<const vtkDataObject*, KeptBlock> Entries;
+
+  /// Gives each block what is known of it, and drops what nobody asks for.
+  void Assign(std::vector<Block>& blocks)
+  {
+    std::map<const vtkDataObject*, KeptBlock> before;
+    before.swap(this->Entries);
+    for (Block& block : blocks)
+    {
+      // A magnified image is made anew.
+      const vtkDataObject* source = block.Original ? block.DataSet : block.Source;
+      const vtkMTimeType time = block.Source->GetMTime();
+      const auto known = before.find(source);
+      KeptBlock& now = this->Entries[source];
+      if (known != before.end() && known->second.Time == time && known->second.Cells == block.Cells &&
+        known->second.Slab == block.Shape.Slab && !block.Original)
+      {
+        now = std::move(known->second);
+        before.erase(known);
+      }
+      now.Time = time;
+      now.Cells = block.Cells;
+      now.Slab = block.Shape.Slab;
+      block.Known = &now;
+    }
+  }
+};
+
 struct vtkSteerableNoiseFilter::Internals
 {
   vtkSteerableNoiseFilter* Self = nullptr;
@@ -427,7 +512,8 @@ struct vtkSteerableNoiseFilter::Internals
     double progressStart, double progressShare)
   {
     noise::Samples samples(
-      block.DataSet, block.Array, block.Cells, block.Shape, magnification, plane, limit);
+      block.DataSet, block.Array, block.Cells, block.Shape, magnification, plane, limit,
+      block.Known->GetFields(block, plane, limit));
     const noise::ShapeArrays& shapes = block.ShapeArrays;
     if (shapes[0] || shapes[1] || shapes[2])
     {
@@ -638,6 +724,7 @@ vtkSteerableNoiseFilter::vtkSteerableNoiseFilter()
     0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, vtkDataSetAttributes::VECTORS);
   this->SetResultArrayName("SteerableNoise");
   this->SetController(vtkMultiProcessController::GetGlobalController());
+  this->Kept.reset(new KeptBlocks);
 }
 
 //------------------------------------------------------------------------------
@@ -645,6 +732,17 @@ vtkSteerableNoiseFilter::~vtkSteerableNoiseFilter()
 {
   this->SetResultArrayName(nullptr);
   this->SetController(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkSteerableNoiseFilter::SetKeepFields(bool keepFields)
+{
+  // No reason to execute again.
+  this->KeepFields = keepFields;
+  if (!keepFields)
+  {
+    this->Kept->Entries.clear();
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -771,15 +869,26 @@ int vtkSteerableNoiseFilter::RequestData(
     return refuse(HyperTreeGridMessage);
   }
 
+  // On every way out.
+  const auto drop = [this](KeptBlocks* kept)
+  {
+    if (!this->KeepFields)
+    {
+      kept->Entries.clear();
+    }
+  };
+  const std::unique_ptr<KeptBlocks, decltype(drop)> dropUnlessKept(this->Kept.get(), drop);
+
   Internals internals;
   internals.Self = this;
   std::vector<Block> blocks;
   bool failed = false;
   // `original`: what `dataset` was magnified from, or null.
-  const auto addBlock = [&](vtkDataSet* dataset, vtkDataSet* original, bool required)
+  const auto addBlock = [&](vtkDataSet* dataset, vtkDataObject* source, vtkDataSet* original, bool required)
   {
     Block block;
     block.DataSet = dataset;
+    block.Source = source;
     std::string why;
     if (internals.FindArray(block, why))
     {
@@ -850,7 +959,7 @@ int vtkSteerableNoiseFilter::RequestData(
       composite->SetDataSet(iterator, copy);
       if (auto* dataset = vtkDataSet::SafeDownCast(copy))
       {
-        addBlock(dataset, finer ? image : nullptr, false);
+        addBlock(dataset, leaf, finer ? image : nullptr, false);
       }
       else if (copy->IsA("vtkHyperTreeGrid"))
       {
@@ -888,7 +997,7 @@ int vtkSteerableNoiseFilter::RequestData(
       outInfo->Get(SDDP::WHOLE_EXTENT(), wholeExtent);
       whole = wholeExtent;
     }
-    addBlock(dataset, magnify ? image : nullptr, true);
+    addBlock(dataset, input, magnify ? image : nullptr, true);
   }
 
   // Everything that ranks do together comes before anything that may fail on one of them.
@@ -903,10 +1012,11 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     block.Shape = shape.Get(block.DataSet, block.Cells, whole);
   }
+  this->Kept->Assign(blocks);
   Extremes extremes;
   for (const Block& block : blocks)
   {
-    extremes.Add(block, this->FeatureSize == 0.0);
+    extremes.Add(block.Known->GetExtremes(block, this->FeatureSize == 0.0));
   }
   extremes.Reduce(this->Controller);
   const bool needsMagnitude = this->IsSteered() && this->StrengthMode == MAGNITUDE &&
@@ -1005,6 +1115,7 @@ void vtkSteerableNoiseFilter::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "ResultArrayName: " << (this->ResultArrayName ? this->ResultArrayName : "(none)")
      << "\n";
+  os << indent << "KeepFields: " << this->KeepFields << "\n";
   os << indent << "OutputMetric: " << this->OutputMetric << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
 }

@@ -33,6 +33,8 @@
 #include "SteerableNoiseFiltersModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
 
+#include <memory>
+
 class vtkMultiProcessController;
 
 class STEERABLENOISEFILTERS_EXPORT vtkSteerableNoiseFilter : public vtkPassInputTypeAlgorithm
@@ -452,6 +454,18 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Whether what depends on the input alone is kept for the next execution: normals, curvature, bounds and
+   * distances of samples. Then a change of any other property costs the noise alone. It takes 24 bytes for
+   * each sample on a surface and 12 in a volume, none on images, and is dropped when the input's modification time
+   * changes or this is switched off, which drops it at once. The input itself is not kept. Default on.
+   */
+  virtual void SetKeepFields(bool keepFields);
+  vtkGetMacro(KeepFields, bool);
+  vtkBooleanMacro(KeepFields, bool);
+  ///@}
+
+  ///@{
   /// Ranks that agree on automatic values; default the global controller, null: this process alone.
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
@@ -513,6 +527,7 @@ protected:
   int Seed = 0;
   char* ResultArrayName = nullptr;
   bool OutputMetric = false;
+  bool KeepFields = true;
   vtkMultiProcessController* Controller = nullptr;
 
 private:
@@ -526,6 +541,8 @@ private:
   }
 
   struct Internals;
+  struct KeptBlocks;
+  std::unique_ptr<KeptBlocks> Kept;
 };
 
 #endif

@@ -38,6 +38,7 @@
 #include "vtkUniformGrid.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
+#include "vtkWeakPointer.h"
 #include "vtkVersion.h"
 
 #include <Eigen/Dense>
@@ -1067,6 +1068,132 @@ TEST(SteerableNoiseDataSets, SpacingIsTheDistanceOfNeighboursAndNotTheSizeOfCell
   cells->GetPointData()->Initialize();
   AddFlow(cells, true);
   EXPECT_NEAR(AutomaticSize(cells), 0.25, 1e-6);
+}
+
+/// What an update keeps for the next one shows in no bit, whatever changes between them.
+TEST(SteerableNoiseDataSets, WhatIsKeptIsThatOfTheInput)
+{
+  const auto noiseOf = [](vtkSteerableNoiseFilter* filter)
+  {
+    filter->Update();
+    std::vector<double> noise;
+    const auto append = [&](vtkDataObject* object)
+    {
+      auto* dataset = vtkDataSet::SafeDownCast(object);
+      for (vtkDataSetAttributes* attributes :
+        { static_cast<vtkDataSetAttributes*>(dataset->GetPointData()),
+          static_cast<vtkDataSetAttributes*>(dataset->GetCellData()) })
+      {
+        vtkDataArray* array = attributes->GetArray("SteerableNoise");
+        for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+        {
+          noise.push_back(array->GetComponent(i, 0));
+        }
+      }
+    };
+    if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0)))
+    {
+      append(blocks->GetBlock(0));
+      append(blocks->GetBlock(1));
+    }
+    else
+    {
+      append(filter->GetOutputDataObject(0));
+    }
+    return noise;
+  };
+  const auto copyOf = [](vtkDataObject* object)
+  {
+    auto copy = vtkSmartPointer<vtkDataObject>::Take(object->NewInstance());
+    copy->DeepCopy(object);
+    return copy;
+  };
+
+  // A surface, a volume, cells, and both in a composite.
+  auto cells = Sheet(VTK_QUAD, 1);
+  cells->GetPointData()->Initialize();
+  AddFlow(cells, true);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, Sheet(VTK_QUAD, 1));
+  blocks->SetBlock(1, Through<vtkAppendFilter>(Box(false)));
+  const vtkSmartPointer<vtkDataObject> inputs[] = { Sheet(VTK_QUAD, 1), Through<vtkAppendFilter>(Box(false)), cells,
+    blocks.Get() };
+  for (const auto& input : inputs)
+  {
+    vtkNew<vtkSteerableNoiseFilter> filter;
+    filter->SetInputDataObject(input);
+    const auto expectAsFresh = [&](const char* what)
+    {
+      vtkNew<vtkSteerableNoiseFilter> fresh;
+      fresh->KeepFieldsOff();
+      fresh->SetInputDataObject(copyOf(filter->GetInputDataObject(0, 0)));
+      fresh->SetSeed(filter->GetSeed());
+      fresh->SetFeatureSize(filter->GetFeatureSize());
+      fresh->SetFollowCurvature(filter->GetFollowCurvature());
+      fresh->SetMaskUpperThreshold(filter->GetMaskUpperThreshold());
+      const auto noise = noiseOf(filter);
+      EXPECT_GT(noise.size(), 300u) << what;
+      EXPECT_EQ(noise, noiseOf(fresh)) << input->GetClassName() << ": " << what;
+    };
+    expectAsFresh("first");
+    filter->SetSeed(3);
+    expectAsFresh("seed");
+    filter->SetFeatureSize(0.3);
+    expectAsFresh("size");
+    filter->FollowCurvatureOff();
+    expectAsFresh("straight");
+    filter->FollowCurvatureOn();
+    filter->SetFeatureSize(1.7);
+    expectAsFresh("larger size");
+    filter->SetMaskUpperThreshold(1.1);
+    expectAsFresh("limit");
+    filter->SetMaskUpperThreshold(0.0);
+    filter->SetFeatureSize(0.0);
+
+    // In place.
+    auto* leaf = vtkPointSet::SafeDownCast(
+      input.Get() == blocks.Get() ? blocks->GetBlock(0) : input.Get());
+    for (vtkIdType i = 0; i < leaf->GetNumberOfPoints(); ++i)
+    {
+      const double* place = leaf->GetPoint(i);
+      leaf->GetPoints()->SetPoint(i, place[0], place[1], place[2] + std::sin(place[0]));
+    }
+    leaf->GetPoints()->Modified();
+    input->Modified(); // a composite does not see it
+    expectAsFresh("places");
+    vtkDataArray* array = input.Get() == cells.Get() ? leaf->GetCellData()->GetVectors() : leaf->GetPointData()->GetVectors();
+    for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+    {
+      array->SetComponent(i, 1, std::cos(0.3 * i));
+    }
+    array->Modified();
+    input->Modified();
+    expectAsFresh("vectors");
+
+    // Without a new modification time nothing tells of a change: so much is kept, and can be dropped.
+    for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
+    {
+      array->SetComponent(i, 1, std::cos(0.2 * i));
+    }
+    filter->Modified();
+    const auto kept = noiseOf(filter);
+    filter->KeepFieldsOff();
+    filter->Modified();
+    EXPECT_NE(noiseOf(filter), kept) << input->GetClassName();
+  }
+
+  // The input may go.
+  vtkNew<vtkSteerableNoiseFilter> filter;
+  vtkWeakPointer<vtkDataObject> gone;
+  {
+    auto first = Sheet(VTK_QUAD, 1);
+    gone = first;
+    filter->SetInputDataObject(first);
+    filter->Update();
+  }
+  filter->SetInputDataObject(Sheet(VTK_TRIANGLE_STRIP, 1));
+  filter->Update();
+  EXPECT_EQ(gone, nullptr);
 }
 
 /// Degrees beside metres, and thin domains: the size is a share of what a picture shows.

@@ -13,6 +13,8 @@
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkSMPTools.h"
+#include "vtkUnsignedCharArray.h"
+#include "vtkUnstructuredGrid.h"
 
 #include <Eigen/Core>
 
@@ -34,21 +36,34 @@ public:
     : Dimensions(VTK_NUMBER_OF_CELL_TYPES, 0)
     , Curved(VTK_NUMBER_OF_CELL_TYPES, false)
   {
+    // VTK makes what it needs for these when it is first called.
+    if (dataset->GetNumberOfCells() > 0)
+    {
+      vtkNew<vtkIdList> ids;
+      dataset->GetCellPoints(0, ids);
+    }
     std::vector<bool> known(VTK_NUMBER_OF_CELL_TYPES, false);
     vtkNew<vtkGenericCell> cell;
-    for (vtkIdType id = 0; id < dataset->GetNumberOfCells(); ++id)
+    const auto add = [&](int type)
     {
-      const int type = dataset->GetCellType(id);
       if (!known.at(type))
       {
         known[type] = true;
         cell->SetCellType(type);
         this->Dimensions[type] = cell->GetCellDimension();
         this->Curved[type] = !cell->IsLinear();
-        // VTK makes what it needs for this when it is first called.
-        vtkNew<vtkIdList> ids;
-        dataset->GetCellPoints(id, ids);
       }
+    };
+    auto* grid = vtkUnstructuredGrid::SafeDownCast(dataset);
+    if (vtkUnsignedCharArray* types = grid ? grid->GetCellTypesArray() : nullptr)
+    {
+      const unsigned char* begin = types->GetPointer(0);
+      std::for_each(begin, begin + types->GetNumberOfValues(), add);
+      return;
+    }
+    for (vtkIdType id = 0; id < dataset->GetNumberOfCells(); ++id)
+    {
+      add(dataset->GetCellType(id));
     }
   }
 

@@ -29,43 +29,64 @@ CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hid
 {
   const vtkIdType count = dataset->GetNumberOfPoints();
   const PointPlaces places(dataset);
-  double largest = 0.0;
-  for (vtkIdType point = 0; point < count; ++point)
+  const auto isThere = [&](vtkIdType point, const Eigen::Vector3d& place)
+  { return place.allFinite() && !hidden.HasPoint(point); };
+  constexpr vtkIdType chunkSize = 65536;
+  const vtkIdType chunks = (count + chunkSize - 1) / chunkSize;
+  std::vector<double> largestOf(static_cast<std::size_t>(chunks), 0.0);
+  const auto forEachPoint = [&](auto&& visit)
   {
-    const Eigen::Vector3d place = places(point);
-    if (place.allFinite() && !hidden.HasPoint(point))
+    vtkSMPTools::For(0, chunks, 1,
+      [&](vtkIdType begin, vtkIdType end)
+      {
+        for (vtkIdType chunk = begin; chunk < end; ++chunk)
+        {
+          const vtkIdType last = std::min(count, (chunk + 1) * chunkSize);
+          for (vtkIdType point = chunk * chunkSize; point < last; ++point)
+          {
+            visit(chunk, point, places(point));
+          }
+        }
+      });
+  };
+  forEachPoint(
+    [&](vtkIdType chunk, vtkIdType point, const Eigen::Vector3d& place)
     {
-      largest = std::max(largest, place.cwiseAbs().maxCoeff());
-    }
-  }
+      if (isThere(point, place))
+      {
+        double& largest = largestOf[static_cast<std::size_t>(chunk)];
+        largest = std::max(largest, place.cwiseAbs().maxCoeff());
+      }
+    });
+  const double largest = count > 0 ? *std::max_element(largestOf.begin(), largestOf.end()) : 0.0;
   this->Starts.push_back(0);
   if (!(largest > 1e-300) || largest > 1e300)
   {
     return;
   }
+  // 0: no place.
   const double unit = std::ldexp(1.0, std::ilogb(largest) - 22);
-  const auto hashOf = [&](vtkIdType point, std::uint64_t& hash)
-  {
-    const Eigen::Vector3d place = places(point);
-    if (!place.allFinite() || hidden.HasPoint(point))
+  std::vector<std::uint64_t> hashes(static_cast<std::size_t>(count), 0);
+  forEachPoint(
+    [&](vtkIdType, vtkIdType point, const Eigen::Vector3d& place)
     {
-      return false;
-    }
-    hash = 0x9E3779B97F4A7C15u;
-    for (const double value : place)
-    {
-      hash = (hash ^ static_cast<std::uint64_t>(std::llround(value / unit))) * 0xBF58476D1CE4E5B9u;
-      hash ^= hash >> 31;
-    }
-    return true;
-  };
+      if (isThere(point, place))
+      {
+        std::uint64_t hash = 0x9E3779B97F4A7C15u;
+        for (const double value : place)
+        {
+          hash = (hash ^ static_cast<std::uint64_t>(std::llround(value / unit))) * 0xBF58476D1CE4E5B9u;
+          hash ^= hash >> 31;
+        }
+        hashes[static_cast<std::size_t>(point)] = std::max<std::uint64_t>(hash, 1);
+      }
+    });
   // Most points are alone. Eight bits for each tell nearly all of them, and the rest is sorted.
   std::vector<bool> once(8 * static_cast<std::size_t>(count) + 1, false);
   std::vector<bool> twice(once.size(), false);
-  std::uint64_t hash;
-  for (vtkIdType point = 0; point < count; ++point)
+  for (const std::uint64_t hash : hashes)
   {
-    if (hashOf(point, hash))
+    if (hash)
     {
       const std::size_t bit = hash % once.size();
       twice[bit] = twice[bit] || once[bit];
@@ -75,7 +96,8 @@ CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hid
   std::vector<Key> order;
   for (vtkIdType point = 0; point < count; ++point)
   {
-    if (hashOf(point, hash) && twice[hash % once.size()])
+    const std::uint64_t hash = hashes[static_cast<std::size_t>(point)];
+    if (hash && twice[hash % once.size()])
     {
       order.emplace_back(hash, point);
     }

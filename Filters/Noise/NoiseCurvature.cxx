@@ -73,6 +73,25 @@ public:
         return products * inverse;
       }
     }
+    if (dimension == 2)
+    {
+      // The adjugate of what is nearly a plane has its normal in all columns, and its square even more so.
+      Matrix3d adjugate;
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        adjugate.col(axis) = squares.col((axis + 1) % 3).cross(squares.col((axis + 2) % 3));
+      }
+      if (adjugate.trace() > 1e-9)
+      {
+        int largest;
+        adjugate.diagonal().maxCoeff(&largest);
+        const Vector3d normal = (adjugate * adjugate.col(largest)).normalized();
+        const Matrix3d across = normal * normal.transpose();
+        const Matrix3d inPlane = Matrix3d::Identity() - across;
+        const Matrix3d inverse = (inPlane * squares * inPlane + across).inverse();
+        return products * inPlane * inverse;
+      }
+    }
     const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(squares);
     Matrix3d gradient = Matrix3d::Zero();
     for (int axis = 3 - dimension; axis < 3; ++axis)
@@ -194,10 +213,9 @@ void ReadCell(vtkDataSet* dataset, const PointPlaces& places, vtkIdType id, Vect
 /// Of points, from the cells around them.
 vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden,
-  double cellSize)
+  const CoincidentPoints& copies, double cellSize)
 {
   const CellDimensions dimensions(dataset);
-  const CoincidentPoints copies(dataset, hidden); // before the arrays: it takes memory for a while
   const PointPlaces places(dataset);
   const vtkIdType count = dataset->GetNumberOfPoints();
   std::vector<Vector3d> directions(static_cast<std::size_t>(count));
@@ -248,10 +266,10 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
 
 /// Of cells, whose directions go to their points first.
 vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
-  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden)
+  vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden,
+  const CoincidentPoints& copies)
 {
   const CellDimensions dimensions(dataset);
-  const CoincidentPoints copies(dataset, hidden);
   const PointPlaces places(dataset);
   auto points = NewOutputArray("Directions", 3, dataset->GetNumberOfPoints());
   PointSums sums(dataset, points, DirectionSteps);
@@ -301,10 +319,10 @@ bool AreSamePlaces(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
 
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells,
-  const HiddenSamples& hidden, double cellSize)
+  const HiddenSamples& hidden, const CoincidentPoints& copies, double cellSize)
 {
-  return cells ? CurvatureOfCells(dataset, vectors, hidden)
-               : CurvatureOfPoints(dataset, vectors, hidden, cellSize);
+  return cells ? CurvatureOfCells(dataset, vectors, hidden, copies)
+               : CurvatureOfPoints(dataset, vectors, hidden, copies, cellSize);
 }
 
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions)[3],

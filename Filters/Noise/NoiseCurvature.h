@@ -25,15 +25,18 @@ class vtkDataSet;
 
 namespace noise
 {
+class CoincidentPoints;
+
 /**
  * 3 components per point (`cells`: per cell) in 1 / world units, 0 where there is no direction. Each cell
  * has the gradient that fits the directions at its points best, in the least-squares sense, and a point the
  * mean over its cells. On simplices and parallelepipeds that is what VTK's cells give at their centres.
+ * `copies`: of the points, which share what they have.
  * `cellSize`: in world units, of the noise; curvatures are summed in steps of 2^-24 / cellSize.
  */
 vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, bool cells,
-  const HiddenSamples& hidden, double cellSize);
+  const HiddenSamples& hidden, const CoincidentPoints& copies, double cellSize);
 
 /**
  * The same of a structured grid of samples: differences of the neighbours along its axes, as on images.

@@ -265,7 +265,7 @@ void Samples::SetPoints()
   }
 }
 
-vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
+vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
 {
   const CellDimensions dimensions(this->DataSet);
   if (!dimensions.Has(2))
@@ -364,7 +364,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals() const
       normals->SetTuple(point, tuple);
     }
   }
-  CoincidentPoints(this->DataSet, this->Hidden).Share(normals, DirectionSteps, true, CreaseCosine);
+  this->GetCopies().Share(normals, DirectionSteps, true, CreaseCosine);
   // A point of a volume is not on a surface.
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; dimensions.Has(3) && cell < this->DataSet->GetNumberOfCells(); ++cell)
@@ -505,13 +505,22 @@ void Samples::ComputeCurvature(double featureSize)
   this->Field.Curvature = this->CurvatureReader.get();
 }
 
-vtkSmartPointer<vtkFloatArray> Samples::FindCurvature(double featureSize) const
+const CoincidentPoints& Samples::GetCopies()
+{
+  if (!this->Copies)
+  {
+    this->Copies.reset(new CoincidentPoints(this->DataSet, this->Hidden));
+  }
+  return *this->Copies;
+}
+
+vtkSmartPointer<vtkFloatArray> Samples::FindCurvature(double featureSize)
 {
   int dimensions[3];
   if (!GetDimensions(this->DataSet, dimensions))
   {
     return ComputeStreamlineCurvature(
-      this->DataSet, *this->Field.Vectors, this->Cells, this->Hidden, featureSize);
+      this->DataSet, *this->Field.Vectors, this->Cells, this->Hidden, this->GetCopies(), featureSize);
   }
   for (int& samples : dimensions)
   {
@@ -638,13 +647,15 @@ Eigen::Array3d SpacingOf(const Eigen::Vector3d* places, std::size_t count, int d
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < count; ++i)
   {
-    mean += places[i] / static_cast<double>(count);
+    mean += places[i];
   }
+  mean /= static_cast<double>(count);
   Eigen::Array3d variance = Eigen::Array3d::Zero();
   for (std::size_t i = 0; i < count; ++i)
   {
-    variance += (places[i] - mean).array().square() / static_cast<double>(count);
+    variance += (places[i] - mean).array().square();
   }
+  variance /= static_cast<double>(count);
   if (count == static_cast<std::size_t>(dimension) + 1)
   {
     // Half a square or a sixth of a cube counts as the whole.
@@ -775,15 +786,6 @@ void SampleSpacing::Add(
   }
   const vtkIdType cells = dataset->GetNumberOfCells();
   const vtkIdType points = dataset->GetNumberOfPoints();
-  const auto add = [this](const Eigen::Array3d& spacing)
-  {
-    if (spacing.allFinite())
-    {
-      Eigen::Map<Eigen::Array3d>(this->Sum) += spacing;
-      this->Count += 1.0;
-    }
-  };
-  vtkNew<vtkIdList> ids;
   std::optional<NearestPoints> nearest;
   const auto addNearest = [&](vtkIdType point)
   {
@@ -794,7 +796,7 @@ void SampleSpacing::Add(
     const double distance = nearest->GetDistance(point);
     if (distance > 0.0)
     {
-      add(Eigen::Array3d::Constant(distance));
+      this->Add(Eigen::Array3d::Constant(distance));
     }
   };
   // Distances of the nearest are looked for at fewer places: each takes a search.
@@ -811,64 +813,105 @@ void SampleSpacing::Add(
     return;
   }
   const CellDimensions dimensions(dataset);
+  const PointPlaces placeOf(dataset);
   // A slab's own thickness says nothing about the distance of its samples: one side of it does.
   int dims[3] = { 1, 1, 1 };
   GetDimensions(dataset, dims);
   const vtkIdType strides[3] = { 1, dims[0], static_cast<vtkIdType>(dims[0]) * dims[1] };
   vtkUnsignedCharArray* ghosts = dataset->GetCellGhostArray();
-  const vtkIdType step = 1 + cells / cellsAtMost;
-  vtkIdType searches = 0;
-  Places places;
-  for (vtkIdType id = 0; id < cells; id += step)
+
+  // Parts are summed one after the other, so that threads do not show.
+  struct Part
+  {
+    SampleSpacing Spacing;
+    std::vector<vtkIdType> Vertices;
+  };
+  const auto addCell = [&](vtkIdType id, vtkIdList* ids, Places& places, Part& part)
   {
     if (hidden.HasCell(id) || IsGhostCell(ghosts, id))
     {
-      continue;
+      return;
     }
     const int type = dataset->GetCellType(id);
     const int dimension = slab >= 0 ? 2 : dimensions.Get(type);
     dataset->GetCellPoints(id, ids);
+    if (dimension == 0)
+    {
+      part.Vertices.insert(part.Vertices.end(), ids->begin(), ids->end());
+      return;
+    }
     places.clear();
     for (const vtkIdType point : *ids)
     {
       if (slab < 0 || point / strides[slab] % dims[slab] == 0)
       {
-        places.emplace_back();
-        dataset->GetPoint(point, places.back().data());
+        places.push_back(placeOf(point));
       }
-    }
-    if (dimension == 0)
-    {
-      for (const vtkIdType point : *ids)
-      {
-        searches += 1;
-        if (searches <= searchesAtMost)
-        {
-          addNearest(point);
-        }
-      }
-      continue;
     }
     if (places.size() < static_cast<std::size_t>(dimension) + 1)
     {
-      continue;
+      return;
     }
-    const std::size_t part = type == VTK_TRIANGLE_STRIP ? 3 : type == VTK_POLY_LINE ? 2 : 0;
-    if (part > 0 && !centers)
+    const std::size_t size = type == VTK_TRIANGLE_STRIP ? 3 : type == VTK_POLY_LINE ? 2 : 0;
+    if (size > 0 && !centers)
     {
-      for (std::size_t first = 0; first + part <= places.size(); ++first)
+      for (std::size_t first = 0; first + size <= places.size(); ++first)
       {
-        add(SpacingOf(places.data() + first, part, dimension, false));
+        part.Spacing.Add(SpacingOf(places.data() + first, size, dimension, false));
       }
     }
     else if (type == VTK_POLYGON && places.size() > 4 && !centers)
     {
-      add(SpacingOfEdges(places));
+      part.Spacing.Add(SpacingOfEdges(places));
     }
     else
     {
-      add(SpacingOf(places.data(), places.size(), dimension, centers));
+      part.Spacing.Add(SpacingOf(places.data(), places.size(), dimension, centers));
     }
+  };
+  constexpr vtkIdType cellsPerPart = 4096;
+  const vtkIdType step = 1 + cells / cellsAtMost;
+  const vtkIdType partSize = cellsPerPart * step;
+  std::vector<Part> parts(static_cast<std::size_t>((cells + partSize - 1) / partSize));
+  WithThreads(
+    [&]
+    {
+      vtkSMPTools::For(0, static_cast<vtkIdType>(parts.size()), 1,
+        [&](vtkIdType begin, vtkIdType end)
+        {
+          vtkNew<vtkIdList> ids;
+          Places places;
+          for (vtkIdType part = begin; part < end; ++part)
+          {
+            const vtkIdType last = std::min(cells, (part + 1) * partSize);
+            for (vtkIdType id = part * partSize; id < last; id += step)
+            {
+              addCell(id, ids, places, parts[static_cast<std::size_t>(part)]);
+            }
+          }
+        });
+    });
+  vtkIdType searches = 0;
+  for (const Part& part : parts)
+  {
+    this->Add(part.Spacing);
+    for (const vtkIdType point : part.Vertices)
+    {
+      searches += 1;
+      if (searches <= searchesAtMost)
+      {
+        addNearest(point);
+      }
+    }
+  }
+}
+
+void SampleSpacing::Add(const Eigen::Array3d& distances)
+{
+  if (distances.allFinite())
+  {
+    Eigen::Map<Eigen::Array3d>(this->Sum) += distances;
+    this->Count += 1.0;
   }
 }
 

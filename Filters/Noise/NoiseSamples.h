@@ -14,6 +14,8 @@
 
 #include "vtkSmartPointer.h"
 
+#include <Eigen/Core>
+
 #include <limits>
 #include <memory>
 #include <vector>
@@ -25,6 +27,8 @@ class vtkImageData;
 
 namespace noise
 {
+class CoincidentPoints;
+
 /**
  * What samples off images know of their geometry and field, to be kept from one update to the next while both stay
  * the same: 24 bytes for each sample on a surface, 12 in a volume.
@@ -97,9 +101,10 @@ private:
   /// Whether a structured grid is closed along an axis at the row with this first cell.
   bool DoCellsMeet(int axis, vtkIdType cell) const;
   /// Unit normals of samples on cells of dimension 2, 0 for the others; null if all are.
-  vtkSmartPointer<vtkFloatArray> ComputeNormals() const;
+  vtkSmartPointer<vtkFloatArray> ComputeNormals();
   vtkSmartPointer<vtkFloatArray> ComputeSlabNormals() const;
-  vtkSmartPointer<vtkFloatArray> FindCurvature(double featureSize) const;
+  vtkSmartPointer<vtkFloatArray> FindCurvature(double featureSize);
+  const CoincidentPoints& GetCopies();
 
   vtkDataSet* DataSet;
   vtkDataArray* Array;
@@ -118,6 +123,7 @@ private:
   std::unique_ptr<steerable::TupleReader<float>> NormalReader;
   std::unique_ptr<steerable::TupleReader<float>> CurvatureReader;
   std::unique_ptr<steerable::TupleReader<double>> Positions;
+  std::unique_ptr<CoincidentPoints> Copies;
   SampleFields Own;
   SampleFields* Fields;
   vtkSmartPointer<vtkDataArray> CellCenters;
@@ -144,6 +150,8 @@ struct SampleSpacing
     vtkIdType cellsAtMost);
 
   void Add(const SampleSpacing& other);
+  /// Along the axes, in one cell; none where one is not finite.
+  void Add(const Eigen::Array3d& distances);
 };
 } // namespace noise
 

@@ -405,6 +405,9 @@ struct vtkSteerableNoiseFilter::Internals
   vtkSteerableNoiseFilter* Self = nullptr;
   steerable::EvaluationCounts Counts;
   vtkIdType Samples = 0;
+  /// Of all ranks.
+  double AllDegenerate = 0.0;
+  double AllSamples = 0.0;
   vtkIdType TooLong = 0;
   vtkIdType BadPlaces = 0;
   vtkIdType BlocksWithout = 0;
@@ -631,6 +634,24 @@ struct vtkSteerableNoiseFilter::Internals
       });
   }
 
+  /// All ranks of the controller take part.
+  void ShareCounts(vtkMultiProcessController* controller)
+  {
+    if (controller && controller->GetNumberOfProcesses() > 1)
+    {
+      const double here[2] = { static_cast<double>(this->Counts.Degenerate), static_cast<double>(this->Samples) };
+      double all[2];
+      controller->AllReduce(here, all, 2, vtkCommunicator::SUM_OP);
+      this->AllDegenerate = all[0];
+      this->AllSamples = all[1];
+    }
+    else
+    {
+      this->AllDegenerate = static_cast<double>(this->Counts.Degenerate);
+      this->AllSamples = static_cast<double>(this->Samples);
+    }
+  }
+
   void Report(const Extremes& extremes, const Lengths& lengths, const steerable::NoiseParameters& parameters, bool composite)
   {
     std::ostringstream message;
@@ -661,11 +682,11 @@ struct vtkSteerableNoiseFilter::Internals
               << " in 1 / FeatureSize^2 and were bounded. Check TensorUse and FeatureSize: a streak reaches "
                  "1 / sqrt(eigenvalue) cells.";
     }
-    // Every wall and body has a few; most of the data are a mistake.
-    if (2 * this->Counts.Degenerate > static_cast<std::uint64_t>(this->Samples))
+    // Every wall and body has a few, and a rank may hold nothing else; most of the data are a mistake.
+    if (2.0 * this->AllDegenerate > this->AllSamples && this->Counts.Degenerate > 0)
     {
       message << "\n"
-              << this->Counts.Degenerate << " of " << this->Samples
+              << this->AllDegenerate << " of " << this->AllSamples
               << " samples have no direction (zero, NaN, infinite or along the surface's normal). "
                  "Check that the right array is chosen.";
     }
@@ -1000,7 +1021,7 @@ int vtkSteerableNoiseFilter::RequestData(
     addBlock(dataset, input, magnify ? image : nullptr, true);
   }
 
-  // Everything that ranks do together comes before anything that may fail on one of them.
+  // What ranks do together comes before anything that may fail on one of them, and the counts after all have tried.
   steerable::NoiseParameters parameters = internals.GetParameters(time);
   noise::CommonShape shape;
   for (const Block& block : blocks)
@@ -1024,10 +1045,12 @@ int vtkSteerableNoiseFilter::RequestData(
   const Lengths lengths(this->IsSteered() ? blocks : std::vector<Block>(), needsMagnitude, this->MaskUpperThreshold, this->Controller);
   if (failed)
   {
+    internals.ShareCounts(this->Controller);
     return refuse(internals.Why);
   }
   if (blocks.empty())
   {
+    internals.ShareCounts(this->Controller);
     internals.Report(extremes, lengths, parameters, composite != nullptr);
     return 1;
   }
@@ -1041,6 +1064,7 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   this->ResolvedFeatureSize = parameters.FeatureSize;
 
+  std::string problem;
   try
   {
     for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
@@ -1052,7 +1076,12 @@ int vtkSteerableNoiseFilter::RequestData(
   }
   catch (const std::exception& error)
   {
-    return refuse(error.what());
+    problem = error.what();
+  }
+  internals.ShareCounts(this->Controller);
+  if (!problem.empty())
+  {
+    return refuse(problem);
   }
   if (!composite)
   {

@@ -45,6 +45,10 @@ def sources():
     yield "fill", simple.Calculator(
         Input=simple.Wavelet(WholeExtent=[-12, 12, -9, 9, -7, 8]), ResultArrayName="Gradient",
         Function="iHat * %s + jHat * 0.01 * (1 + coordsX)" % missing), "Fill"
+    # Without flow in a third, which is all that one of three ranks has.
+    yield "still", simple.Calculator(
+        Input=simple.Wavelet(WholeExtent=[-12, 12, -9, 9, -7, 8]), ResultArrayName="Gradient",
+        Function="iHat * if(coordsX < -3, 0, 1)"), "Still"
     yield "wake", simple.OpenDataFile(pt.WAKE), None
     shared = lambda name: os.path.join(pt.SHARED, name)
     if os.path.exists(shared("disk_out_ref.ex2")):
@@ -88,7 +92,7 @@ for name, source, preparation in sources():
         vectors = ["POINTS", "Gradient"]
     elif preparation == "Layers":
         vectors = ["CELLS", "Gradient"]
-    elif preparation == "Fill":
+    elif preparation in ("Fill", "Still"):
         vectors = ["POINTS", "Gradient"]
     elif preparation == "Ghosts":
         # Renamed after 5.11.
@@ -104,7 +108,14 @@ for name, source, preparation in sources():
         noise = simple.SteerableNoise(
             Input=source, SelectInputVectors=vectors, FollowCurvature=curvature, Magnification=1,
             StrengthMode="Magnitude" if name == "fill" else "Constant")
+        warnings = []
+        noise.GetClientSideObject().AddObserver("WarningEvent", lambda *_: warnings.append(1))
         simple.UpdatePipeline(proxy=noise)
+        if name == "still":
+            data = noise.GetClientSideObject().GetOutput()
+            still = (pt.array(data) == 0).mean()
+            assert ranks < 3 or rank > 0 or still > 0.7, "one rank has no flow: %g" % still
+            assert not warnings, "no warning on rank %d" % rank
         save("%s_%d" % (name, curvature), noise)
         if name == "fill":
             data = noise.GetClientSideObject().GetOutput()

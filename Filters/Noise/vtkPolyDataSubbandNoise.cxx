@@ -169,13 +169,6 @@ double GetSpacing(const SurfaceSums& sums, double diagonal)
   return std::round(mean / unit) * unit;
 }
 
-/// The most scales that leave the coarsest two cycles in a tile.
-int MostScales(steerable::SubbandParameters pyramid)
-{
-  const double octaves = std::log2(pyramid.CenterFrequency() / 2.0);
-  return std::clamp(static_cast<int>(std::floor(octaves + 1e-9)) + 1, 1, 6);
-}
-
 /// The value that half of a histogram's area is below.
 double Median(const double* histogram)
 {
@@ -228,7 +221,7 @@ Layout LayOnTexture(steerable::SubbandParameters pyramid, const SurfaceSums& sum
   };
 
   Layout layout;
-  const int most = MostScales(pyramid);
+  const int most = pyramid.MostScales();
   double best = std::numeric_limits<double>::infinity();
   const auto tryRepeats = [&](double repeats, int scales)
   {
@@ -267,7 +260,7 @@ Layout LayOnPlanes(
 {
   const double octaves = std::max(2.0, std::log2(anisotropy) + 1.0) +
     std::log2(wavelengths.Longest / wavelengths.Shortest);
-  pyramid.Scales = std::min(static_cast<int>(std::ceil(octaves - 1e-9)) + 1, MostScales(pyramid));
+  pyramid.Scales = std::min(static_cast<int>(std::ceil(octaves - 1e-9)) + 1, pyramid.MostScales());
   Layout layout;
   layout.Pyramid = pyramid;
   const double coarsest = std::ldexp(pyramid.CenterFrequency(), 1 - pyramid.Scales);
@@ -893,24 +886,35 @@ int vtkPolyDataSubbandNoise::RequestData(
     addMesh(vtkPolyData::SafeDownCast(output));
   }
 
-  // Everything that ranks do together comes before anything that may fail on one of them.
+  // What fails on this rank is told of after everything that ranks do together: the others wait for it.
+  std::string failure;
+  const auto attempt = [&failure](const auto& work)
+  {
+    try
+    {
+      if (failure.empty())
+      {
+        work();
+      }
+    }
+    catch (const std::exception& error)
+    {
+      failure = error.what();
+    }
+  };
   bounds.Reduce(this->Controller);
   const double diagonal = bounds.GetDiagonal();
-  std::string failure;
-  std::string lateFailure; // after what all ranks do together
-  try
-  {
-    for (Block& block : blocks)
+  attempt(
+    [&]
     {
-      block.Surface = std::make_unique<SubbandSurface>(block.Mesh, block.Texture, this->WrapSeams);
-      block.Surface->AddTo(sums, diagonal);
-      ++sums[block.Texture ? SurfaceSums::TexturedBlocks : SurfaceSums::ProjectedBlocks];
-    }
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
+      for (Block& block : blocks)
+      {
+        block.Surface =
+          std::make_unique<SubbandSurface>(block.Mesh, block.Texture, this->WrapSeams);
+        block.Surface->AddTo(sums, diagonal);
+        ++sums[block.Texture ? SurfaceSums::TexturedBlocks : SurfaceSums::ProjectedBlocks];
+      }
+    });
   const SurfaceSums local = sums;
   Reduce(this->Controller, sums.Values.data(), sums.Values.size(), vtkCommunicator::SUM_OP);
 
@@ -923,10 +927,6 @@ int vtkPolyDataSubbandNoise::RequestData(
   if (failure.empty() && local[SurfaceSums::OtherBlocks] > 0 && nothing && blocksWithout == 0)
   {
     failure = "The input holds no surface but " + otherType + ". Extract its surface first.";
-  }
-  if (!failure.empty())
-  {
-    return refuse(failure);
   }
 
   // K directions make features rounder than the metric says: it has to say more.
@@ -942,6 +942,10 @@ int vtkPolyDataSubbandNoise::RequestData(
     std::numeric_limits<double>::infinity(), -1.0 };
   for (Block& block : blocks)
   {
+    if (!failure.empty())
+    {
+      break;
+    }
     const auto find = [&](const std::string& name, const char* property) -> vtkDataArray*
     {
       vtkDataArray* array =
@@ -950,7 +954,7 @@ int vtkPolyDataSubbandNoise::RequestData(
         (!array || array->GetNumberOfComponents() > 3 ||
           array->GetNumberOfTuples() < block.Mesh->GetNumberOfPoints()))
       {
-        lateFailure = "Array '" + name + "' for " + property +
+        failure = "Array '" + name + "' for " + property +
           " is not on the points with 1 to 3 components. Choose another one, or None.";
         return nullptr;
       }
@@ -1013,17 +1017,25 @@ int vtkPolyDataSubbandNoise::RequestData(
 
   // Charts smaller than a wavelength leave no noise but seams.
   double charts[3] = { 0.0, 0.0, 0.0 }; // their area, that of all, and their number
-  for (const Block& block : blocks)
-  {
-    if (this->Parameterization == AUTOMATIC && block.Texture)
+  attempt(
+    [&]
     {
-      const SubbandSurface::Charts small = block.Surface->FindChartsBelow(wavelength);
-      charts[0] += SurfaceSums::RoundArea(small.Area, diagonal);
-      charts[1] += SurfaceSums::RoundArea(small.WholeArea, diagonal);
-      charts[2] += small.Count;
-    }
-  }
+      for (const Block& block : blocks)
+      {
+        if (this->Parameterization == AUTOMATIC && block.Texture)
+        {
+          const SubbandSurface::Charts small = block.Surface->FindChartsBelow(wavelength);
+          charts[0] += SurfaceSums::RoundArea(small.Area, diagonal);
+          charts[1] += SurfaceSums::RoundArea(small.WholeArea, diagonal);
+          charts[2] += small.Count;
+        }
+      }
+    });
   Reduce(this->Controller, charts, 3, vtkCommunicator::SUM_OP);
+  if (!failure.empty())
+  {
+    return refuse(failure);
+  }
   const bool shattered = charts[0] > 0.5 * charts[1];
 
   const double mapped = sums[SurfaceSums::RegularArea] + sums[SurfaceSums::FlippedArea];
@@ -1037,10 +1049,6 @@ int vtkPolyDataSubbandNoise::RequestData(
   double textureRepeats = 1.0;
   try
   {
-    if (!lateFailure.empty())
-    {
-      throw std::invalid_argument(lateFailure);
-    }
     steerable::SubbandParameters pyramid;
     pyramid.Orientations = this->Orientations;
     pyramid.TileSize = this->TileSize;

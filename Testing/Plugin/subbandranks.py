@@ -7,7 +7,8 @@ import plugintest as pt
 from paraview import simple
 from steerablenoise import vtkPolyDataSubbandNoise
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.vtkCommonCore import VTK_STRING, vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkTriangleFilter
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -116,5 +117,31 @@ if os.path.exists(os.path.join(pt.SHARED, "gfs_wind_sphere.vtp")):
     for i, leaf in enumerate(pt.leaves(noise.GetClientSideObject().GetOutputDataObject(0))):
         if leaf.GetNumberOfPoints():
             save("ghosts_%d" % i, leaf)
+
+# One rank without the vectors that the others have: it says so, and nobody waits for it for ever.
+sphere = next(surfaces())[1]
+swirl = numpy.cross([0.0, 0.0, 1.0], vtk_to_numpy(sphere.GetPoints().GetData()))
+field = numpy_to_vtk(swirl, deep=True)
+field.SetName("swirl")
+sphere.GetPointData().AddArray(field)
+part = piece(sphere, pt.slabs)
+lacks = rank == ranks - 1 and ranks > 1
+if lacks:
+    part.GetPointData().RemoveArray("swirl")
+algorithm = vtkPolyDataSubbandNoise()
+algorithm.SetInputData(part)
+algorithm.SetInputArrayToProcess(0, 0, 0, vtkDataObject.POINT, "swirl")
+errors = []
+
+
+@calldata_type(VTK_STRING)
+def note(_algorithm, _event, text):
+    errors.append(text)
+
+
+algorithm.AddObserver("ErrorEvent", note)
+algorithm.Update()
+assert len(errors) == lacks and all("There is no array 'swirl'" in text for text in errors), errors
+assert (algorithm.GetOutputDataObject(0).GetNumberOfPoints() == 0) == lacks
 
 print("rank %d of %d done" % (rank, ranks))

@@ -7,6 +7,10 @@
 #define SubbandNames_h
 
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
 
 #include <string>
 
@@ -36,6 +40,17 @@ inline void NameSubbands(vtkDataArray* array, int orientations, int scales,
       array->SetComponentName(first + j * orientations + i, name.c_str());
     }
   }
+}
+
+/// Field array that says which frequency the finest of an image's bands is centred at, cycles per pixel.
+constexpr const char* BandCenterName = "BandCenter";
+
+inline void AddBandCenter(vtkDataObject* image, double center)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(BandCenterName);
+  array->InsertNextValue(center);
+  image->GetFieldData()->AddArray(array);
 }
 } // namespace noise
 

@@ -10,12 +10,16 @@ from paraview import simple
 pt.load_plugin()
 
 # One default: the proxy's and the class's, by what the pipeline passes on.
-for proxy, name in ((simple.SubbandNoise, "vtkPolyDataSubbandNoise"), (simple.SubbandNoiseTiles, "vtkImageSubbandNoiseSource")):
+for proxy, name, data in (
+    (simple.SubbandNoise, "vtkPolyDataSubbandNoise", simple.Sphere),
+    (simple.SubbandNoiseTiles, "vtkImageSubbandNoiseSource", None),
+    (simple.SubbandDecomposition, "vtkImageSubbandDecomposition", simple.Wavelet),
+):
     fresh = getattr(steerablenoise, name)()
-    instance = proxy(Input=simple.Sphere()) if "Poly" in name else proxy()
+    instance = proxy(Input=data()) if data else proxy()
     texts = {"Automatic": 0, "Least Squares": 0, "Fractal": 0, "Float": 0}
     for key in instance.ListProperties():
-        if key in ("Input", "SelectInputVectors", "WeightsArray", "FactorsArray", "WavelengthArray", "AnisotropyArray"):
+        if key in ("Input", "SelectInputScalars", "SelectInputVectors", "WeightsArray", "FactorsArray", "WavelengthArray", "AnisotropyArray"):
             continue
         value = texts.get(str(getattr(instance, key)).strip("'"), getattr(instance, key))
         expected = getattr(fresh, "Get" + key)()
@@ -112,6 +116,16 @@ pt.check(whole.PointData["Subbands"].GetNumberOfComponents() == 8, "3 x 2 bands 
 tiles = simple.SubbandNoiseTiles(TileSize=64, Scales=2, Orientations="4")
 simple.UpdatePipeline(proxy=tiles)
 pt.check(tiles.PointData["Subbands"].GetNumberOfComponents() == 8, "tiles of 4 x 2 bands")
+
+# A user's own image: its bands sum to it.
+image = simple.Wavelet(WholeExtent=[-16, 15, -16, 15, 0, 0])
+bands = simple.SubbandDecomposition(Input=image, Scales=2, Orientations="4", BandCenter=0.2)
+simple.UpdatePipeline(proxy=bands)  # the active scalars
+decomposed = pt.array(bands.GetClientSideObject().GetOutputDataObject(0), "Subbands")
+original = pt.array(image.GetClientSideObject().GetOutputDataObject(0), "RTData")
+pt.check(decomposed.shape == (1024, 4 * 2 + 4 + 1), "4 x 2 bands and five residuals")
+difference = abs(decomposed.sum(axis=1, dtype=float) - original).max() / abs(original).max()
+pt.check(difference < 1e-6, "bands sum to the image: %g" % difference)
 
 # A saved state comes back.
 with tempfile.TemporaryDirectory() as folder:

@@ -202,12 +202,7 @@ int vtkImageSubbandDecomposition::RequestData(
         }
       });
     noise::NameSubbands(bands, pyramid.Orientations, pyramid.Scales);
-    for (int i = 0; i < pyramid.Orientations; ++i)
-    {
-      bands->SetComponentName(
-        pyramid.Components() + i, ("o" + std::to_string(i) + "high").c_str());
-    }
-    bands->SetComponentName(components - 1, "low");
+    noise::NameResiduals(bands, pyramid.Orientations, pyramid.Components());
     output->CopyStructure(input);
     output->GetPointData()->SetScalars(bands);
     noise::AddBandCenter(output, this->BandCenter);

@@ -12,6 +12,7 @@ from vtkmodules.vtkCommonCore import VTK_STRING, vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkTriangleFilter
 from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkFiltersTexture import vtkTextureMapToSphere
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
@@ -89,6 +90,11 @@ def surfaces():
     sphere.Update()
     yield "sphere", sphere.GetOutput(), pt.slabs, None
     yield "lonely", sphere.GetOutput(), all_on_first, None
+    # Mirrored half way around, and stretched at the poles.
+    mapped = vtkTextureMapToSphere()
+    mapped.SetInputConnection(sphere.GetOutputPort())
+    mapped.Update()
+    yield "seams", mapped.GetOutput(), pt.slabs, None
     if os.path.exists(os.path.join(pt.SHARED, "spot.vtp")):
         yield "spot", read("spot.vtp"), pt.slabs, None
         yield "wind", read("gfs_wind_sphere.vtp"), pt.slabs, "wind"
@@ -99,6 +105,7 @@ for name, mesh, owner, vectors in surfaces():
     algorithm = vtkPolyDataSubbandNoise()
     algorithm.SetInputData(piece(mesh, owner))
     algorithm.SetOctaves(2)
+    algorithm.SetBlendSeams(name == "seams")
     if vectors:
         algorithm.SetInputArrayToProcess(0, 0, 0, vtkDataObject.POINT, vectors)
     algorithm.Update()

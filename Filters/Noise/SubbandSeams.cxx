@@ -52,40 +52,56 @@ void SubbandSeams::Gather(vtkMultiProcessController* controller)
 }
 
 //------------------------------------------------------------------------------
-Eigen::Vector3d SubbandSeams::CellOf(const Eigen::Vector3d& place) const
+void SubbandSeams::Build()
 {
-  return (place / this->Reach).array().floor().matrix();
+  const auto before = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b)
+  { return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3); };
+  std::sort(this->Places.begin(), this->Places.end(), before);
+  this->Places.erase(
+    std::unique(this->Places.begin(), this->Places.end()), this->Places.end());
+  Split(this->Places.begin(), this->Places.end(), 0);
 }
 
 //------------------------------------------------------------------------------
-void SubbandSeams::SetReach(double reach)
+void SubbandSeams::Split(Iterator begin, Iterator end, int axis)
 {
-  this->Reach = reach;
-  this->Cells.clear();
-  for (const Eigen::Vector3d& place : this->Places)
+  if (end - begin > 1)
   {
-    this->Cells[HashPlace(this->CellOf(place))].push_back(place);
+    const Iterator middle = begin + (end - begin) / 2;
+    std::nth_element(begin, middle, end,
+      [axis](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[axis] < b[axis]; });
+    Split(begin, middle, (axis + 1) % 3);
+    Split(middle + 1, end, (axis + 1) % 3);
   }
 }
 
 //------------------------------------------------------------------------------
-double SubbandSeams::GetDistance(const Eigen::Vector3d& place) const
+void SubbandSeams::Search(ConstIterator begin, ConstIterator end, int axis,
+  const Eigen::Vector3d& place, double& squared)
 {
-  double nearest = std::numeric_limits<double>::infinity(); // squared
-  const Eigen::Vector3d cell = this->CellOf(place);
-  for (int n = 0; n < 27 && !this->Cells.empty(); ++n)
+  if (begin == end)
   {
-    const Eigen::Vector3d there = cell + Eigen::Vector3d(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-    const auto found = this->Cells.find(HashPlace(there));
-    if (found != this->Cells.end())
-    {
-      for (const Eigen::Vector3d& seam : found->second)
-      {
-        nearest = std::min(nearest, (seam - place).squaredNorm());
-      }
-    }
+    return;
   }
-  const double distance = std::sqrt(nearest);
-  return distance <= this->Reach ? distance : std::numeric_limits<double>::infinity();
+  const ConstIterator middle = begin + (end - begin) / 2;
+  squared = std::min(squared, (*middle - place).squaredNorm());
+  const double beyond = place[axis] - (*middle)[axis];
+  const int next = (axis + 1) % 3;
+  const bool lower = beyond < 0.0;
+  lower ? Search(begin, middle, next, place, squared)
+        : Search(middle + 1, end, next, place, squared);
+  if (beyond * beyond <= squared)
+  {
+    lower ? Search(middle + 1, end, next, place, squared)
+          : Search(begin, middle, next, place, squared);
+  }
+}
+
+//------------------------------------------------------------------------------
+double SubbandSeams::GetDistance(const Eigen::Vector3d& place, double reach) const
+{
+  double squared = reach * reach;
+  Search(this->Places.begin(), this->Places.end(), 0, place, squared);
+  return squared < reach * reach ? std::sqrt(squared) : std::numeric_limits<double>::infinity();
 }
 } // namespace noise

@@ -9,8 +9,6 @@
 
 #include <Eigen/Core>
 
-#include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 class vtkMultiProcessController;
@@ -28,21 +26,25 @@ public:
   /// Adds those of all ranks; they do this together.
   void Gather(vtkMultiProcessController* controller);
 
-  /// Prepares GetDistance up to `reach`, world units.
-  void SetReach(double reach);
+  /// Sorts what was added, for GetDistance.
+  void Build();
 
   /**
    * Straight distance from the nearest point of a seam, world units, infinite where that is farther
-   * than the reach. It does not depend on the order of seams. Safe to call from threads.
+   * than `reach`. It does not depend on the order of seams. Safe to call from threads.
    */
-  double GetDistance(const Eigen::Vector3d& place) const;
+  double GetDistance(const Eigen::Vector3d& place, double reach) const;
 
 private:
-  Eigen::Vector3d CellOf(const Eigen::Vector3d& place) const;
+  using Iterator = std::vector<Eigen::Vector3d>::iterator;
+  using ConstIterator = std::vector<Eigen::Vector3d>::const_iterator;
 
+  static void Split(Iterator begin, Iterator end, int axis);
+  static void Search(ConstIterator begin, ConstIterator end, int axis,
+    const Eigen::Vector3d& place, double& squared);
+
+  // A k-d tree once built: the middle of a range divides the rest along an axis, the next ones the halves.
   std::vector<Eigen::Vector3d> Places;
-  double Reach = 0.0;
-  std::unordered_map<std::uint64_t, std::vector<Eigen::Vector3d>> Cells; // with sides of the reach
 };
 } // namespace noise
 

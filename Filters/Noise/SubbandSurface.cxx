@@ -68,9 +68,7 @@ std::array<double, 2> SingularValues(const Eigen::Matrix2d& square)
   const double smaller = larger > 0.0 ? std::max(0.0, square.determinant()) / larger : 0.0;
   return { std::sqrt(smaller), std::sqrt(larger) };
 }
-} // namespace
 
-//------------------------------------------------------------------------------
 std::uint64_t HashPlace(const Eigen::Vector3d& place)
 {
   std::uint64_t hash = 0x9E3779B97F4A7C15u;
@@ -84,6 +82,7 @@ std::uint64_t HashPlace(const Eigen::Vector3d& place)
   }
   return hash;
 }
+} // namespace
 
 //------------------------------------------------------------------------------
 int SurfaceSums::BinOf(double octaves)

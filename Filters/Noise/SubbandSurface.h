@@ -12,7 +12,6 @@
 #include "vtkType.h"
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 class vtkDataArray;
@@ -61,9 +60,6 @@ struct SurfaceSums
   static double RoundArea(double area, double diagonal);
   static double OctavesOf(int bin) { return (bin + 0.5) / BinsPerOctave - 0.5 * Octaves; }
 };
-
-/// A hash of the bits of a place.
-std::uint64_t HashPlace(const Eigen::Vector3d& place);
 
 /// A steering array; Values is null where nothing steers.
 struct SteeringVectors

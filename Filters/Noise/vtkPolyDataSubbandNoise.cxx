@@ -568,9 +568,10 @@ struct Evaluator
       if (mapped)
       {
         const int orientations = this->Lookups[0].Lay->Pyramid.Orientations;
+        const double wavelength = this->GetWavelength(point);
         share = steerable::TextureBlend(steerable::DistortionRatio(metrics.Isotropic),
           steerable::FollowedStretch(orientations),
-          this->Seams->GetDistance(surface.GetPoint(point)) / this->GetWavelength(point));
+          this->Seams->GetDistance(surface.GetPoint(point), wavelength) / wavelength);
       }
       if (share < 1.0)
       {
@@ -1198,7 +1199,7 @@ int vtkPolyDataSubbandNoise::RequestData(
         }
       });
     seams.Gather(this->Controller);
-    seams.SetReach(wavelengths.Longest);
+    seams.Build();
   }
   if (!failure.empty())
   {

@@ -1482,6 +1482,40 @@ TEST(PolyDataSubbandNoise, BandsOfAnImageTakeThePlaceOfTiles)
   }
 }
 
+TEST(PolyDataSubbandNoise, WeightsOfAnImageAreNotHeldAtTheVarianceOfNoise)
+{
+  const int N = 64;
+  auto bands = BandsOf(N, [](int x, int y) { return std::sin(0.7 * x) + 0.2 * (x * y % 5); }, 4, 3);
+  const auto points = Sheet(N + 1, Flat);
+  const auto valuesOf = [&](bool own)
+  {
+    return Noise(points, 0.125,
+      [&, own](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetSubbandsData(bands);
+        // Other methods' weights are replaced.
+        filter->SetMethod(own ? vtkPolyDataSubbandNoise::LEAST_SQUARES : vtkPolyDataSubbandNoise::NONE);
+        if (own)
+        {
+          filter->SetInputArrayToProcess(vtkPolyDataSubbandNoise::WEIGHTS_ARRAY, 0, 0,
+            vtkDataObject::FIELD_ASSOCIATION_POINTS, "weights");
+        }
+      });
+  };
+  auto weights = vtkSmartPointer<vtkFloatArray>::New();
+  weights->SetName("weights");
+  weights->SetNumberOfComponents(4 * 3 + 4 + 1);
+  weights->SetNumberOfTuples((N + 1) * (N + 1));
+  weights->Fill(10.0);
+  points->GetPointData()->AddArray(weights);
+  const auto whole = valuesOf(false);
+  const auto tenfold = valuesOf(true);
+  for (std::size_t n = 0; n < whole.size(); ++n)
+  {
+    ASSERT_NEAR(tenfold[n], 10.0 * whole[n], 1e-4) << n;
+  }
+}
+
 // The paper's Fig. 8 through the filter: points of a mesh that see a zone plate under a Jacobian.
 TEST(PolyDataSubbandNoise, FiltersTheZonePlate)
 {

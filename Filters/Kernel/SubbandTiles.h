@@ -113,9 +113,9 @@ int ImageComponents(const SubbandParameters& parameters);
 /**
  * Write two components of an image, `first` and the one after it, if there is one, to width*height
  * texels of ImageComponents floats. They are the image, taken as periodic, seen through the filters
- * of the pyramid with k0 = BandCenter cycles per pixel; TileSize must be the shorter side. The sum of
- * all components is the image. The high residual is cut by orientation too, so that factors along
- * directions filter all of an image (paper, section 4).
+ * of the pyramid with k0 = BandCenter cycles per pixel; TileSize must be the shorter side. The sum
+ * of all components is the image. The high residual is cut by orientation too, so that factors
+ * along directions filter all of an image (paper, section 4).
  */
 void WriteImageSubbands(const ImageSpectrum& spectrum, const SubbandParameters& parameters,
   int first, float* values);
@@ -150,14 +150,13 @@ std::array<double, 4> LoopWeights(double phase);
  */
 std::array<double, 2> TileOffset(std::uint32_t index, std::uint32_t seed);
 
-/// Write the components of a texel at (u, v), in repeats, to `bands`. Coordinates wrap; those that are not
-/// finite give NaN.
+/// Write the components of a texel at (u, v), in repeats, to `bands`. Coordinates wrap; those that
+/// are not finite give NaN.
 void SampleSubbands(const SubbandTiles& tiles, TileLookup lookup, double u, double v, float* bands);
 
 /**
- * The noise at `count` points: noise[p] = sum_c weights[p*C + c] band_c(uv[2p], uv[2p + 1]), c < C =
- * tiles.Components().
- * Coordinates are in repeats and wrap; those that are not finite give NaN.
+ * The noise at `count` points: noise[p] = sum_c weights[p*C + c] band_c(uv[2p], uv[2p + 1]), c < C
+ * = tiles.Components(). Coordinates are in repeats and wrap; those that are not finite give NaN.
  */
 void SumSubbands(const SubbandTiles& tiles, TileLookup lookup, std::size_t count, const double* uv,
   const float* weights, float* noise);

@@ -60,10 +60,10 @@ TextureGradients PlanarGradients(const Eigen::Vector3d& normal, int axis, double
 Eigen::Vector3d TriplanarBlend(const Eigen::Vector3d& normal);
 
 /**
- * Weight w of noise at texture coordinates beside noise of planar projections, which gets
- * sqrt(1 - w^2) and takes over where a texture cannot carry noise: w falls smoothly from 1 to 0 between
- * `distance` 1 and 0 from a seam, in wavelengths, and between a `stretch` of the texture that weights
- * follow (`followed`) and 1.5 times that.
+ * Weight w of noise at texture coordinates beside noise of planar projections, whose weight is
+ * sqrt(1 - w^2) and which takes over where a texture cannot carry noise. w falls smoothly from 1 to
+ * 0 between `distance` 1 and 0 from a seam, in wavelengths, and between a `stretch` of the texture
+ * that weights follow (`followed`) and 1.5 times that.
  */
 double TextureBlend(double stretch, double followed, double distance);
 

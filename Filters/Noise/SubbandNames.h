@@ -72,7 +72,8 @@ inline bool CountSubbands(vtkDataArray* array, int& orientations, int& scales)
   return scales > 0 && scales * orientations <= array->GetNumberOfComponents();
 }
 
-/// Field array that says which frequency the finest of an image's bands is centred at, cycles per pixel.
+/// Field array that says which frequency the finest of an image's bands is centred at, cycles per
+/// pixel.
 constexpr const char* BandCenterName = "BandCenter";
 
 inline void AddBandCenter(vtkDataObject* image, double center)

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Places at which noise that is looked up at texture coordinates jumps or turns back, and how far points
- * are from them (private to this module).
+ * Places at which noise that is looked up at texture coordinates jumps or turns back, and how far
+ * points are from them (private to this module).
  */
 #ifndef SubbandSeams_h
 #define SubbandSeams_h
@@ -43,7 +43,8 @@ private:
   static void Search(ConstIterator begin, ConstIterator end, int axis,
     const Eigen::Vector3d& place, double& squared);
 
-  // A k-d tree once built: the middle of a range divides the rest along an axis, the next ones the halves.
+  // A k-d tree once built: the middle of a range divides the rest along an axis, the next ones the
+  // halves.
   std::vector<Eigen::Vector3d> Places;
 };
 } // namespace noise

@@ -98,8 +98,8 @@ public:
   Charts FindChartsBelow(double side) const;
 
   /**
-   * Points at which texture coordinates jump by other steps than whole repeats, as they do where many
-   * meet at a pole, or turn back, between a triangle that is mirrored and one that is not.
+   * Points at which texture coordinates jump by other steps than whole repeats, as they do where
+   * many meet at a pole, or turn back, between a triangle that is mirrored and one that is not.
    */
   std::vector<vtkIdType> FindSeams() const;
 

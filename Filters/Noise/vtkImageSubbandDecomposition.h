@@ -4,18 +4,20 @@
  * @class   vtkImageSubbandDecomposition
  * @brief   cuts an image into bands of direction and scale
  *
- * Takes a flat vtkImageData with a scalar array on its points and gives it the float array "Subbands",
- * in place of its others: the image seen through the filters of vtkImageSubbandNoiseSource (Goldberg,
- * Zwicker and Durand 2008, section 2, there for noise; section 4 and Fig. 8 for any texture). Band
- * (i, j) is component j * Orientations + i, named o<i>s<j>; larger j is coarser. After the bands come
- * what is finer, by direction too, o<i>high, and what is coarser with the mean, low. The sum of all
- * components is the image, to rounding of floats; weighted sums are the image filtered by direction and
- * scale. The field array "BandCenter" holds what the property says.
+ * Takes a flat vtkImageData with a scalar array on its points and gives it the float array
+ * "Subbands", in place of its others: the image seen through the filters of
+ * vtkImageSubbandNoiseSource (Goldberg, Zwicker and Durand 2008, section 2, there for noise;
+ * section 4 and Fig. 8 for any texture). Band (i, j) is component j * Orientations + i, named
+ * o<i>s<j>; larger j is coarser. After the bands come what is finer, by direction too, o<i>high,
+ * and what is coarser with the mean, low. The sum of all components is the image, to rounding of
+ * floats; weighted sums are the image filtered by direction and scale. The field array "BandCenter"
+ * holds what the property says.
  *
- * The image counts as periodic: where its edges do not match, the step between them is in the bands.
- * Each side has 16 to 2048 points; those without large prime factors are fastest. Whole extents are
- * requested. Errors: no such array on the points, a Component that it does not have, values that are not
- * finite, an image that is not flat, sides out of range, more Scales than the image has room for.
+ * The image counts as periodic: where its edges do not match, the step between them is in the
+ * bands. Each side has 16 to 2048 points; those without large prime factors are fastest. Whole
+ * extents are requested. Errors: no such array on the points, a Component that it does not have,
+ * values that are not finite, an image that is not flat, sides out of range, more Scales than the
+ * image has room for.
  *
  * vtkPolyDataSubbandNoise takes the bands of a square image in place of its tiles.
  *
@@ -48,7 +50,8 @@ public:
   ///@}
 
   ///@{
-  /// Scales, one octave apart, 1 to 6, default 4. The coarsest needs 2 cycles along the shorter side.
+  /// Scales, one octave apart, 1 to 6, default 4. The coarsest needs 2 cycles along the shorter
+  /// side.
   vtkSetClampMacro(Scales, int, 1, 6);
   vtkGetMacro(Scales, int);
   ///@}

@@ -472,7 +472,8 @@ struct Evaluator
     Plane& plane = planes[which];
     const Lookup& lookup = this->Lookups[which];
     const int components = lookup.Tiles->Components();
-    double gamma[MostSubbandComponents] = {};
+    double gamma[MostSubbandComponents];
+    std::fill(gamma + lookup.Lay->Pyramid.Components(), gamma + components, 0.0);
     if (!texture.allFinite() || !lookup.Weights->Compute(metric, gamma))
     {
       return false;

@@ -81,6 +81,12 @@ void SubbandParameters::Validate() const
     "larger TileSize or a larger BandCenter.");
 }
 
+int SubbandParameters::MostScales() const
+{
+  const double octaves = std::log2(this->CenterFrequency() / 2.0);
+  return std::clamp(static_cast<int>(std::floor(octaves + 1e-9)) + 1, 1, 6);
+}
+
 double AngularScale(int orientations)
 {
   // The factorials cancel: alpha^2 = (1/K) 2/1 4/3 6/5 ... (2K-2)/(2K-3).
@@ -132,6 +138,17 @@ double SubbandFilter(
   return radial == 0.0
     ? 0.0
     : radial * AngularFilter(orientation, parameters.Orientations, std::atan2(ky, kx));
+}
+
+double ResidualFilter(const SubbandParameters& parameters, bool low, double kx, double ky)
+{
+  const double k = std::hypot(kx, ky);
+  if (k == 0.0)
+  {
+    return low ? 1.0 : 0.0;
+  }
+  const double octaves = std::log2(k / parameters.CenterFrequency());
+  return low ? LowResidual(octaves, parameters.Scales) : HighResidual(octaves);
 }
 
 double RadialOverlap(double octaves)

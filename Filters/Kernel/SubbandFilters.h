@@ -57,6 +57,9 @@ struct SubbandParameters
   /// Bands of a texel, K J. Band (i, j) is component j K + i.
   int Components() const { return this->Orientations * this->Scales; }
 
+  /// The most scales, up to 6, that leave the coarsest 2 cycles per repeat; 1 where there are none.
+  int MostScales() const;
+
   /// k0, in cycles per repeat.
   double CenterFrequency() const { return this->TileSize * this->BandCenter; }
 
@@ -88,6 +91,12 @@ double LowResidual(double octaves, int scales);
 /// D_ij at the frequency (kx, ky), in cycles per repeat. Zero at zero frequency.
 double SubbandFilter(
   const SubbandParameters& parameters, int orientation, int scale, double kx, double ky);
+
+/**
+ * What all bands leave at the frequency (kx, ky), in cycles per repeat, on the finer side of the
+ * pyramid or (`low`) on the coarser one, to which zero frequency belongs.
+ */
+double ResidualFilter(const SubbandParameters& parameters, bool low, double kx, double ky);
 
 /**
  * Phi(d) = integral of 4^y h(y) h(y + d) dy, in closed form: the overlap of two radial profiles

@@ -24,34 +24,59 @@ int SignedFrequency(int index, int size)
   return 2 * index < size ? index : index - size;
 }
 
-// In place, size*size values, x fastest. Divides by size^2.
-void InverseTransform(std::vector<Complex>& values, int size)
+// In place, width*height values, x fastest; `transform`(to, from, count) is that of a line.
+template <typename Transform>
+void TransformLines(
+  std::vector<Complex>& values, int width, int height, const Transform& transform)
 {
-  Eigen::FFT<double> fft;
-  std::vector<Complex> line(size), transformed(size);
-  for (int y = 0; y < size; ++y)
+  std::vector<Complex> line(height), transformed(std::max(width, height));
+  for (int y = 0; y < height; ++y)
   {
-    Complex* row = values.data() + static_cast<std::size_t>(y) * size;
+    Complex* row = values.data() + static_cast<std::size_t>(y) * width;
     // Bands leave most rows empty, and the transform of zero is zero.
-    if (std::all_of(row, row + size, [](const Complex& value) { return value == 0.0; }))
+    if (std::all_of(row, row + width, [](const Complex& value) { return value == 0.0; }))
     {
       continue;
     }
-    fft.inv(transformed.data(), row, size);
-    std::copy(transformed.begin(), transformed.end(), row);
+    transform(transformed.data(), row, width);
+    std::copy_n(transformed.begin(), width, row);
   }
-  for (int x = 0; x < size; ++x)
+  for (int x = 0; x < width; ++x)
   {
-    for (int y = 0; y < size; ++y)
+    for (int y = 0; y < height; ++y)
     {
-      line[y] = values[static_cast<std::size_t>(y) * size + x];
+      line[y] = values[static_cast<std::size_t>(y) * width + x];
     }
-    fft.inv(transformed.data(), line.data(), size);
-    for (int y = 0; y < size; ++y)
+    transform(transformed.data(), line.data(), height);
+    for (int y = 0; y < height; ++y)
     {
-      values[static_cast<std::size_t>(y) * size + x] = transformed[y];
+      values[static_cast<std::size_t>(y) * width + x] = transformed[y];
     }
   }
+}
+
+// Divides by the number of values.
+void InverseTransform(std::vector<Complex>& values, int width, int height)
+{
+  Eigen::FFT<double> fft;
+  TransformLines(values, width, height,
+    [&fft](Complex* to, const Complex* from, int count) { fft.inv(to, from, count); });
+}
+
+// What component c of a decomposed image keeps of a frequency, in cycles per shorter side.
+double ImageFilter(const SubbandParameters& parameters, int c, double kx, double ky)
+{
+  const int orientations = parameters.Orientations;
+  const int scale = c / orientations;
+  if (scale < parameters.Scales)
+  {
+    return SubbandFilter(parameters, c % orientations, scale, kx, ky);
+  }
+  const bool low = scale > parameters.Scales;
+  const double residual = ResidualFilter(parameters, low, kx, ky);
+  return low || residual == 0.0
+    ? residual
+    : residual * AngularFilter(c % orientations, orientations, std::atan2(ky, kx));
 }
 
 // Two texels per axis, or four, with their weights.
@@ -221,7 +246,7 @@ std::vector<Complex> SynthesizeNoise(int size, std::uint32_t seed, std::uint32_t
       }
     }
   }
-  InverseTransform(values, size);
+  InverseTransform(values, size, size);
   return values;
 }
 
@@ -256,27 +281,79 @@ std::vector<float> MakeResidualTiles(const SubbandParameters& parameters)
   parameters.Validate();
   std::vector<float> values(
     2 * static_cast<std::size_t>(parameters.TileSize) * parameters.TileSize);
-  const double k0 = parameters.CenterFrequency();
   for (const bool low : { false, true })
   {
     const std::vector<Complex> residual = SynthesizeNoise(parameters.TileSize, parameters.Seed,
       parameters.Realization,
-      [&](int kx, int ky)
-      {
-        const double k = std::hypot(kx, ky);
-        if (k == 0.0)
-        {
-          return low ? 1.0 : 0.0;
-        }
-        const double octaves = std::log2(k / k0);
-        return low ? LowResidual(octaves, parameters.Scales) : HighResidual(octaves);
-      });
+      [&](int kx, int ky) { return ResidualFilter(parameters, low, kx, ky); });
     for (std::size_t texel = 0; texel < residual.size(); ++texel)
     {
       values[2 * texel + low] = static_cast<float>(residual[texel].real());
     }
   }
   return values;
+}
+
+ImageSpectrum TransformImage(const std::vector<double>& values, int width, int height)
+{
+  if (values.size() != static_cast<std::size_t>(width) * height)
+  {
+    throw std::invalid_argument("Subband noise: an image needs width times height values.");
+  }
+  ImageSpectrum spectrum{ width, height, { values.begin(), values.end() } };
+  Eigen::FFT<double> fft;
+  TransformLines(spectrum.Values, width, height,
+    [&fft](Complex* to, const Complex* from, int count) { fft.fwd(to, from, count); });
+  return spectrum;
+}
+
+int ImageComponents(const SubbandParameters& parameters)
+{
+  return parameters.Components() + parameters.Orientations + 1;
+}
+
+void WriteImageSubbands(const ImageSpectrum& spectrum, const SubbandParameters& parameters,
+  int first, float* values)
+{
+  const int width = spectrum.Width, height = spectrum.Height;
+  const int components = ImageComponents(parameters);
+  const bool second = first + 1 < components;
+  // Cycles per side to cycles per shorter side.
+  const double toX = static_cast<double>(parameters.TileSize) / width;
+  const double toY = static_cast<double>(parameters.TileSize) / height;
+  // Both are real, so one transform has them as real and imaginary part.
+  std::vector<Complex> filtered(spectrum.Values.size());
+  std::size_t bin = 0;
+  for (int y = 0; y < height; ++y)
+  {
+    for (int x = 0; x < width; ++x, ++bin)
+    {
+      const int kx = SignedFrequency(x, width), ky = SignedFrequency(y, height);
+      // At the Nyquist frequency k and -k are the same bin: the mean of both keeps images real.
+      const bool nyquist = 2 * kx == -width || 2 * ky == -height;
+      const int oppositeX = 2 * kx == -width ? kx : -kx;
+      const int oppositeY = 2 * ky == -height ? ky : -ky;
+      const auto gain = [&](int c)
+      {
+        const double here = ImageFilter(parameters, c, kx * toX, ky * toY);
+        return nyquist
+          ? 0.5 * (here + ImageFilter(parameters, c, oppositeX * toX, oppositeY * toY))
+          : here;
+      };
+      filtered[bin] =
+        spectrum.Values[bin] * Complex(gain(first), second ? gain(first + 1) : 0.0);
+    }
+  }
+  InverseTransform(filtered, width, height);
+  for (std::size_t pixel = 0; pixel < filtered.size(); ++pixel)
+  {
+    float* texel = values + pixel * components;
+    texel[first] = static_cast<float>(filtered[pixel].real());
+    if (second)
+    {
+      texel[first + 1] = static_cast<float>(filtered[pixel].imag());
+    }
+  }
 }
 
 std::vector<std::uint8_t> QuantizeValues(
@@ -366,14 +443,14 @@ std::array<double, 2> TileOffset(std::uint32_t index, std::uint32_t seed)
 
 void SampleSubbands(const SubbandTiles& tiles, TileLookup lookup, double u, double v, float* bands)
 {
-  InterpolateAll(Gather(tiles, lookup, u, v), tiles.Parameters.Components(), bands);
+  InterpolateAll(Gather(tiles, lookup, u, v), tiles.Components(), bands);
 }
 
 void SumSubbands(const SubbandTiles& tiles, TileLookup lookup, std::size_t count, const double* uv,
   const float* weights, float* noise)
 {
-  const int components = tiles.Parameters.Components();
-  float bands[48];
+  const int components = tiles.Components();
+  float bands[MostSubbandComponents];
   for (std::size_t p = 0; p < count; ++p)
   {
     SampleSubbands(tiles, lookup, uv[2 * p], uv[2 * p + 1], bands);

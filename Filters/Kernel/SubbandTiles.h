@@ -29,20 +29,28 @@ namespace steerable
  *
  * Values holds N*N texels, x fastest, of K*J floats, orientation fastest: all bands of a texel are
  * contiguous because every lookup needs all of them. Amplitudes are those of white noise with unit
- * variance seen through the filters; SubbandWeights takes them into account.
+ * variance seen through the filters; SubbandWeights takes them into account. Tiles of a user's own
+ * image may have the K + 1 residuals of WriteImageSubbands after the bands.
  */
 struct SubbandTiles
 {
   SubbandParameters Parameters;
   std::vector<float> Values;
+  int Residuals = 0; ///< 0, or K + 1.
 
-  /// The K*J bands of texel (x, y), 0 <= x, y < N.
+  /// Floats of a texel.
+  int Components() const { return this->Parameters.Components() + this->Residuals; }
+
+  /// The bands of texel (x, y), 0 <= x, y < N.
   const float* Texel(int x, int y) const
   {
     const std::size_t texel = static_cast<std::size_t>(y) * this->Parameters.TileSize + x;
-    return this->Values.data() + texel * this->Parameters.Components();
+    return this->Values.data() + texel * this->Components();
   }
 };
+
+/// The most floats that a texel has: 8 orientations at 6 scales, with residuals.
+constexpr int MostSubbandComponents = 8 * 6 + 8 + 1;
 
 /// Tiles in 8 bits, same layout. Band c of a texel is (value / 127.5 - 1) * Range[c].
 struct QuantizedSubbandTiles
@@ -70,7 +78,7 @@ std::complex<double> NoiseSpectrum(
 /**
  * The noise of this spectrum after the filter `response`(kx, ky): size*size values, x fastest,
  * scaled so that response 1 gives white noise with unit variance. An even response gives real
- * values, up to rounding. This is the only function that uses an FFT.
+ * values, up to rounding.
  */
 std::vector<std::complex<double>> SynthesizeNoise(int size, std::uint32_t seed,
   std::uint32_t realization, const std::function<double(int kx, int ky)>& response);
@@ -85,6 +93,32 @@ SubbandTiles MakeSubbandTiles(const SubbandParameters& parameters);
  * parameters out of range.
  */
 std::vector<float> MakeResidualTiles(const SubbandParameters& parameters);
+
+/// A real image as frequencies: bin (x, y) is Values[y * Width + x], zero frequency first.
+struct ImageSpectrum
+{
+  int Width = 0;
+  int Height = 0;
+  std::vector<std::complex<double>> Values;
+};
+
+/// The frequencies of width*height values, x fastest. Throws std::invalid_argument if their number
+/// differs.
+ImageSpectrum TransformImage(const std::vector<double>& values, int width, int height);
+
+/// Components of a decomposed image: K*J bands as in tiles, K oriented high residuals and the low
+/// one, in this order.
+int ImageComponents(const SubbandParameters& parameters);
+
+/**
+ * Write two components of an image, `first` and the one after it, if there is one, to width*height
+ * texels of ImageComponents floats. They are the image, taken as periodic, seen through the filters
+ * of the pyramid with k0 = BandCenter cycles per pixel; TileSize must be the shorter side. The sum
+ * of all components is the image. The high residual is cut by orientation too, so that factors
+ * along directions filter all of an image (paper, section 4).
+ */
+void WriteImageSubbands(const ImageSpectrum& spectrum, const SubbandParameters& parameters,
+  int first, float* values);
 
 /// `components` values a texel in 8 bits, as Quantize has it; `range` gets four standard deviations
 /// of each.
@@ -116,13 +150,13 @@ std::array<double, 4> LoopWeights(double phase);
  */
 std::array<double, 2> TileOffset(std::uint32_t index, std::uint32_t seed);
 
-/// Write the K*J bands at (u, v), in repeats, to `bands`. Coordinates wrap; those that are not
-/// finite give NaN.
+/// Write the components of a texel at (u, v), in repeats, to `bands`. Coordinates wrap; those that
+/// are not finite give NaN.
 void SampleSubbands(const SubbandTiles& tiles, TileLookup lookup, double u, double v, float* bands);
 
 /**
- * The noise at `count` points: noise[p] = sum_c weights[p*K*J + c] band_c(uv[2p], uv[2p + 1]).
- * Coordinates are in repeats and wrap; those that are not finite give NaN.
+ * The noise at `count` points: noise[p] = sum_c weights[p*C + c] band_c(uv[2p], uv[2p + 1]), c < C
+ * = tiles.Components(). Coordinates are in repeats and wrap; those that are not finite give NaN.
  */
 void SumSubbands(const SubbandTiles& tiles, TileLookup lookup, std::size_t count, const double* uv,
   const float* weights, float* noise);

@@ -94,14 +94,19 @@ public:
   }
 
   // The factors of the J scales for exp(-q r^2 / 2), r in units of r0.
-  Eigen::VectorXd operator()(double q) const
-  {
-    const Eigen::VectorXd target = (-0.5 * q * this->SquaredRadius.array()).exp();
-    return (this->Dual * target).segment(1, this->Scales);
-  }
+  Eigen::VectorXd operator()(double q) const { return this->Fit(q).segment(1, this->Scales); }
+
+  // That of the high residual.
+  Eigen::VectorXd FitHigh(double q) const { return this->Fit(q).head(1); }
 
 private:
   static constexpr int NodesPerOctave = 48;
+
+  Eigen::VectorXd Fit(double q) const
+  {
+    const Eigen::VectorXd target = (-0.5 * q * this->SquaredRadius.array()).exp();
+    return this->Dual * target;
+  }
 
   int Scales;
   Eigen::MatrixXd Dual;
@@ -239,6 +244,8 @@ SubbandWeights::SubbandWeights(const SubbandWeightParameters& parameters)
     const GaussianFit fit(scales);
     this->Filter.Fill(
       filterFirst, filterLast, FilterBits, [&](double c) { return fit(std::exp2(2.0 * c)); });
+    this->HighFilter.Fill(filterFirst, filterLast, FilterBits,
+      [&](double c) { return fit.FitHigh(std::exp2(2.0 * c)); });
   }
   else
   {
@@ -246,6 +253,9 @@ SubbandWeights::SubbandWeights(const SubbandWeightParameters& parameters)
     this->Target.Fill(0, last, TargetBits, [&](double c) { return ProbeRing(probes, c, scales); });
     this->Filter.Fill(filterFirst, filterLast, FilterBits,
       [&](double c) { return ProbeGaussian(probes, c, scales); });
+    // It counts as scale -1.
+    this->HighFilter.Fill(filterFirst, filterLast, FilterBits,
+      [&](double c) { return ProbeGaussian(probes, c + 1.0, 1); });
   }
   if (parameters.Method == WeightMethod::LeastSquares)
   {
@@ -294,6 +304,18 @@ bool SubbandWeights::Antialias(const Eigen::Matrix2d& footprint, double* beta) c
   }
   const double omega0 = 2.0 * Pi * this->Parameters.Pyramid.CenterFrequency();
   this->WeighBands(this->Filter, footprint * (omega0 * omega0), beta);
+  return true;
+}
+
+bool SubbandWeights::AntialiasHigh(const Eigen::Matrix2d& footprint, double* beta) const
+{
+  if (!IsFinite(footprint))
+  {
+    std::fill_n(beta, this->Parameters.Pyramid.Orientations, 0.0);
+    return false;
+  }
+  const double omega0 = 2.0 * Pi * this->Parameters.Pyramid.CenterFrequency();
+  this->WeighBands(this->HighFilter, footprint * (omega0 * omega0), beta);
   return true;
 }
 
@@ -358,7 +380,7 @@ void SubbandWeights::WeighBands(
   const RadialTable& table, const Eigen::Matrix2d& scaledMetric, double* weights) const
 {
   const int orientations = this->Parameters.Pyramid.Orientations;
-  const int scales = this->Parameters.Pyramid.Scales;
+  const int scales = table.GetWidth();
   double radial[FitDirections * MaximumScales];
   for (int n = 0; n < this->DirectionCount; ++n)
   {

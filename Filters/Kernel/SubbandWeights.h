@@ -89,6 +89,9 @@ public:
    */
   bool Antialias(const Eigen::Matrix2d& footprint, double* beta) const;
 
+  /// The K factors of the oriented high residual of an image (WriteImageSubbands), likewise.
+  bool AntialiasHigh(const Eigen::Matrix2d& footprint, double* beta) const;
+
   /**
    * Scale weights down to a variance of `most` where theirs is above it. Weights that follow a stretch beyond what
    * K holds are large and nearly cancel: with factors of a filter on top they no longer do, and the filter, which
@@ -118,6 +121,7 @@ private:
       int first, int last, int bits, const std::function<Eigen::VectorXd(double c)>& function);
     // Write the J values at q, clamped to the range of the table.
     void Interpolate(double q, double* values) const;
+    int GetWidth() const { return this->Width; }
 
   private:
     double Smallest = 0.0, Largest = 0.0;
@@ -139,14 +143,20 @@ private:
   Eigen::MatrixXd Radial;                     // Q_rad
   RadialTable Target;                         // R of the method
   RadialTable Filter;                         // R of the antialiasing filter
+  RadialTable HighFilter;                     // the same of the high residual
 };
 
 /**
- * The ratio of the singular values of T, 1 or more: how much the texture is stretched. Beyond 2, 3
- * and 4 the weights of K = 4, 6 and 8 orientations no longer give isotropic noise. Infinite for a
- * singular metric.
+ * The ratio of the singular values of T, 1 or more: how much the texture is stretched. Beyond
+ * FollowedStretch weights no longer give isotropic noise. Infinite for a singular metric.
  */
 double DistortionRatio(const Eigen::Matrix2d& metric);
+
+/// The stretch that the weights of K orientations follow: 1.5, 2, 3 and 4 for K = 3, 4, 6 and 8.
+constexpr double FollowedStretch(int orientations)
+{
+  return 0.5 * orientations;
+}
 
 /**
  * Scales that noise with this metric needs: ceil(c_max) - floor(c_min) + 1, for bands centred at

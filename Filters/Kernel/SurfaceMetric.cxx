@@ -78,6 +78,17 @@ Eigen::Vector3d TriplanarBlend(const Eigen::Vector3d& normal)
   return weights.normalized();
 }
 
+double TextureBlend(double stretch, double followed, double distance)
+{
+  constexpr double quarter = 1.57079632679489661923;
+  // Of an infinite stretch or distance too.
+  const double even =
+    stretch < 1.5 * followed ? 1.0 - SmoothStep(followed, 1.5 * followed, stretch) : 0.0;
+  const double apart = distance < 1.0 ? SmoothStep(0.0, 1.0, distance) : 1.0;
+  // A sine, and so a cosine for the rest, has no kink where it comes to 1.
+  return std::sin(quarter * even * apart);
+}
+
 Eigen::Matrix3d SpacingForm(const std::array<Eigen::Vector3d, 3>& corners)
 {
   std::array<Eigen::Vector3d, 3> sides = { corners[1] - corners[0], corners[2] - corners[1],

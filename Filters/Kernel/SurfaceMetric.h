@@ -60,6 +60,14 @@ TextureGradients PlanarGradients(const Eigen::Vector3d& normal, int axis, double
 Eigen::Vector3d TriplanarBlend(const Eigen::Vector3d& normal);
 
 /**
+ * Weight w of noise at texture coordinates beside noise of planar projections, whose weight is
+ * sqrt(1 - w^2) and which takes over where a texture cannot carry noise. w falls smoothly from 1 to
+ * 0 between `distance` 1 and 0 from a seam, in wavelengths, and between a `stretch` of the texture
+ * that weights follow (`followed`) and 1.5 times that.
+ */
+double TextureBlend(double stretch, double followed, double distance);
+
+/**
  * Spacing of the points of a triangle as a form E in space: along a unit vector t they are sqrt(t^T
  * E t) apart. Sides a and b of half a rectangle give a a^T + b b^T, an equilateral triangle 3/4 of
  * its squared side in every direction; of a triangle between, the longest side counts by the cosine

@@ -7,6 +7,10 @@
 #define SubbandNames_h
 
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
 
 #include <string>
 
@@ -36,6 +40,48 @@ inline void NameSubbands(vtkDataArray* array, int orientations, int scales,
       array->SetComponentName(first + j * orientations + i, name.c_str());
     }
   }
+}
+
+/// Names the residuals of an image after its bands: o<i>high and low.
+inline void NameResiduals(vtkDataArray* array, int orientations, int first)
+{
+  for (int i = 0; i < orientations; ++i)
+  {
+    array->SetComponentName(first + i, ("o" + std::to_string(i) + "high").c_str());
+  }
+  array->SetComponentName(first + orientations, "low");
+}
+
+/// Orientations and scales that NameSubbands named components by, from the first on; false: none.
+inline bool CountSubbands(vtkDataArray* array, int& orientations, int& scales)
+{
+  const auto isNamed = [array](int component, int i, int j)
+  {
+    const std::string name = "o" + std::to_string(i) + "s" + std::to_string(j);
+    return component < array->GetNumberOfComponents() && array->GetComponentName(component) &&
+      name == array->GetComponentName(component);
+  };
+  for (orientations = 0; isNamed(orientations, orientations, 0);)
+  {
+    ++orientations;
+  }
+  for (scales = 0; orientations > 0 && isNamed(scales * orientations, 0, scales);)
+  {
+    ++scales;
+  }
+  return scales > 0 && scales * orientations <= array->GetNumberOfComponents();
+}
+
+/// Field array that says which frequency the finest of an image's bands is centred at, cycles per
+/// pixel.
+constexpr const char* BandCenterName = "BandCenter";
+
+inline void AddBandCenter(vtkDataObject* image, double center)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(BandCenterName);
+  array->InsertNextValue(center);
+  image->GetFieldData()->AddArray(array);
 }
 } // namespace noise
 

@@ -98,8 +98,10 @@ double SurfaceSums::RoundArea(double area, double diagonal)
 }
 
 //------------------------------------------------------------------------------
-SubbandSurface::SubbandSurface(vtkPolyData* mesh, vtkDataArray* texture, bool wrapSeams)
+SubbandSurface::SubbandSurface(
+  vtkPolyData* mesh, vtkDataArray* texture, bool wrapSeams, bool projections)
 {
+  projections = projections || !texture;
   const vtkIdType count = mesh->GetNumberOfPoints();
   this->Points.resize(count);
   for (vtkIdType point = 0; point < count; ++point)
@@ -116,7 +118,7 @@ SubbandSurface::SubbandSurface(vtkPolyData* mesh, vtkDataArray* texture, bool wr
       this->Texture[point] = { tuple[0], tuple[1] };
     }
   }
-  else if (vtkDataArray* normals = mesh->GetPointData()->GetNormals())
+  if (vtkDataArray* normals = projections ? mesh->GetPointData()->GetNormals() : nullptr)
   {
     if (normals->GetNumberOfComponents() == 3 && normals->GetNumberOfTuples() >= count)
     {
@@ -134,7 +136,7 @@ SubbandSurface::SubbandSurface(vtkPolyData* mesh, vtkDataArray* texture, bool wr
   {
     this->JoinSeams();
   }
-  else if (this->Normals.empty())
+  if (projections && this->Normals.empty())
   {
     this->ShareNormals(mesh);
   }
@@ -323,8 +325,13 @@ void SubbandSurface::JoinSeams()
     {
       ++end;
     }
-    if (end - begin == 1 || end - begin > MostCopies)
+    if (end - begin == 1)
     {
+      continue;
+    }
+    if (end - begin > MostCopies)
+    {
+      this->Jumps.push_back(order[begin].second);
       continue;
     }
     firsts.clear();
@@ -342,7 +349,53 @@ void SubbandSurface::JoinSeams()
         std::swap(this->NextCopy[*ring], this->NextCopy[point]);
       }
     }
+    // Points that no triangle has do not make a seam.
+    const auto used = std::count_if(firsts.begin(), firsts.end(),
+      [this](vtkIdType first)
+      {
+        vtkIdType copy = first;
+        do
+        {
+          if (this->LinkStart[copy] < this->LinkStart[copy + 1])
+          {
+            return true;
+          }
+          copy = this->NextCopy[copy];
+        } while (copy != first);
+        return false;
+      });
+    if (used > 1)
+    {
+      this->Jumps.push_back(firsts.front());
+    }
   }
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkIdType> SubbandSurface::FindSeams() const
+{
+  std::vector<vtkIdType> seams = this->Jumps;
+  for (vtkIdType point = 0; point < this->GetNumberOfPoints(); ++point)
+  {
+    bool regular = false;
+    bool flipped = false;
+    vtkIdType copy = point;
+    do
+    {
+      for (vtkIdType n = this->LinkStart[copy]; n < this->LinkStart[copy + 1]; ++n)
+      {
+        const TriangleMapping kind = this->Mappings[this->Links[n]].Kind;
+        regular = regular || kind == TriangleMapping::Regular;
+        flipped = flipped || kind == TriangleMapping::Flipped;
+      }
+      copy = this->NextCopy[copy];
+    } while (copy != point);
+    if (regular && flipped)
+    {
+      seams.push_back(point);
+    }
+  }
+  return seams;
 }
 
 //------------------------------------------------------------------------------

@@ -71,8 +71,10 @@ struct SteeringVectors
 class SubbandSurface
 {
 public:
-  /// Null texture coordinates: planar projections. Throws std::bad_alloc.
-  SubbandSurface(vtkPolyData* mesh, vtkDataArray* texture, bool wrapSeams);
+  /// Null texture coordinates: planar projections, which else are there on demand. Throws
+  /// std::bad_alloc.
+  SubbandSurface(
+    vtkPolyData* mesh, vtkDataArray* texture, bool wrapSeams, bool projections = false);
 
   vtkIdType GetNumberOfPoints() const { return static_cast<vtkIdType>(this->Points.size()); }
   bool IsTextured() const { return !this->Texture.empty(); }
@@ -94,6 +96,12 @@ public:
   };
   /// Those whose area is less than that of a square with this side. Ghosts have a part in charts, but no area.
   Charts FindChartsBelow(double side) const;
+
+  /**
+   * Points at which texture coordinates jump by other steps than whole repeats, as they do where
+   * many meet at a pole, or turn back, between a triangle that is mirrored and one that is not.
+   */
+  std::vector<vtkIdType> FindSeams() const;
 
   /// Triangles of this mapping count only where a point has no others.
   void Avoid(steerable::TriangleMapping mapping) { this->Avoided = mapping; }
@@ -151,6 +159,7 @@ private:
   std::vector<vtkIdType> LinkStart; // triangles around point p: Links[LinkStart[p]..LinkStart[p+1]]
   std::vector<vtkIdType> Links;
   std::vector<vtkIdType> NextCopy; // a ring through all copies of a point
+  std::vector<vtkIdType> Jumps;    // one point of each place with several rings
   steerable::TriangleMapping Avoided = steerable::TriangleMapping::Singular; // always left out
 };
 } // namespace noise

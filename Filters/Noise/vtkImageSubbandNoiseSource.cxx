@@ -157,6 +157,7 @@ int vtkImageSubbandNoiseSource::RequestData(
       array->SetComponentName(components - 1, "low");
     }
     output->GetPointData()->SetScalars(array);
+    noise::AddBandCenter(output, this->BandCenter);
   }
   catch (const std::exception& error)
   {

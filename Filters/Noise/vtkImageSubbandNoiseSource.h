@@ -12,11 +12,13 @@
  * All bands are cut from one spectrum of white noise with unit variance, so that sums of bands have
  * known variances: the sum over the orientations of scale j has 3.52617 BandCenter^2 4^-j.
  *
+ * The field array "BandCenter" holds what the property says.
+ *
  * Bytes hold each band at +-4 standard deviations: value / 127.5 - 1, times the band's range, which is
  * in the field array "SubbandRanges".
  *
  * @sa
- * vtkPolyDataSubbandNoise
+ * vtkPolyDataSubbandNoise vtkImageSubbandDecomposition
  */
 #ifndef vtkImageSubbandNoiseSource_h
 #define vtkImageSubbandNoiseSource_h

@@ -9,6 +9,7 @@
 #include "NoiseThreads.h"
 #include "SubbandAnisotropy.h"
 #include "SubbandNames.h"
+#include "SubbandSeams.h"
 #include "SubbandSurface.h"
 #include "SubbandTiles.h"
 #include "SubbandWeights.h"
@@ -20,6 +21,7 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkFloatArray.h"
+#include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkMultiProcessController.h"
@@ -61,7 +63,7 @@ constexpr double PointsPerWavelength = 8.0;
 constexpr double VisibleBlend = 0.1;
 // Points whose weights are held at a time.
 constexpr vtkIdType ChunkSize = 256;
-constexpr int MaximumBands = 48;
+using steerable::MostSubbandComponents;
 
 /// A surface of the output that gets noise.
 struct Block
@@ -169,13 +171,6 @@ double GetSpacing(const SurfaceSums& sums, double diagonal)
   return std::round(mean / unit) * unit;
 }
 
-/// The most scales that leave the coarsest two cycles in a tile.
-int MostScales(steerable::SubbandParameters pyramid)
-{
-  const double octaves = std::log2(pyramid.CenterFrequency() / 2.0);
-  return std::clamp(static_cast<int>(std::floor(octaves + 1e-9)) + 1, 1, 6);
-}
-
 /// The value that half of a histogram's area is below.
 double Median(const double* histogram)
 {
@@ -228,7 +223,7 @@ Layout LayOnTexture(steerable::SubbandParameters pyramid, const SurfaceSums& sum
   };
 
   Layout layout;
-  const int most = MostScales(pyramid);
+  const int most = pyramid.MostScales();
   double best = std::numeric_limits<double>::infinity();
   const auto tryRepeats = [&](double repeats, int scales)
   {
@@ -267,7 +262,7 @@ Layout LayOnPlanes(
 {
   const double octaves = std::max(2.0, std::log2(anisotropy) + 1.0) +
     std::log2(wavelengths.Longest / wavelengths.Shortest);
-  pyramid.Scales = std::min(static_cast<int>(std::ceil(octaves - 1e-9)) + 1, MostScales(pyramid));
+  pyramid.Scales = std::min(static_cast<int>(std::ceil(octaves - 1e-9)) + 1, pyramid.MostScales());
   Layout layout;
   layout.Pyramid = pyramid;
   const double coarsest = std::ldexp(pyramid.CenterFrequency(), 1 - pyramid.Scales);
@@ -282,9 +277,10 @@ Layout LayOnPlanes(
 class TileCache
 {
 public:
-  /// One blend of tiles for each plane, at this phase of the loop.
+  /// One blend of tiles for each plane, at this phase of the loop. Planes are counted from `first`,
+  /// always the same one of a cache: others are independent noise.
   const std::vector<steerable::SubbandTiles>& Update(
-    const steerable::SubbandParameters& pyramid, double phase, int planes)
+    const steerable::SubbandParameters& pyramid, double phase, int planes, int first = 0)
   {
     const std::array<double, 5> key = { double(pyramid.Orientations), double(pyramid.Scales),
       double(pyramid.TileSize), pyramid.BandCenter, double(pyramid.Seed) };
@@ -304,7 +300,7 @@ public:
     {
       for (int m = 0; m < 4; ++m)
       {
-        const int realization = 4 * plane + m;
+        const int realization = 4 * (first + plane) + m;
         if (Counts(loop[m]) && !this->Realizations.count(realization))
         {
           missing.push_back(realization);
@@ -335,7 +331,7 @@ public:
       {
         if (Counts(loop[m]))
         {
-          tiles.push_back(&this->Realizations.at(4 * plane + m));
+          tiles.push_back(&this->Realizations.at(4 * (first + plane) + m));
           weights.push_back(loop[m]);
         }
       }
@@ -359,6 +355,7 @@ struct vtkPolyDataSubbandNoise::Internals
 {
   TileCache TextureTiles;
   TileCache PlaneTiles;
+  TileCache SeamTiles; // of planes that take over from a texture
 
   /// How long features become, tabulated anew only for other parameters: that takes some 20 ms.
   const steerable::SubbandAnisotropy* GetAnisotropy(int orientations, steerable::WeightMethod method)
@@ -381,12 +378,19 @@ private:
 
 namespace
 {
-/// What the points of all blocks with one layout are evaluated with.
+/// What points are looked up in and weighted with on the texture or in a planar projection.
+struct Lookup
+{
+  const Layout* Lay;
+  const steerable::SubbandWeights* Weights;
+  const steerable::SubbandTiles* Tiles;
+};
+
+/// What the points of all blocks with one kind of lookups are evaluated with.
 struct Evaluator
 {
-  const Layout& Lay;
-  const steerable::SubbandWeights& Weights;
-  const std::vector<steerable::SubbandTiles>& Tiles; // one for each plane
+  /// The texture's, or those of three planes, or all four where planes take over at seams.
+  std::vector<Lookup> Lookups;
   double Wavelength;
   double Anisotropy;
   int Octaves;
@@ -409,6 +413,12 @@ struct Evaluator
   const steerable::SubbandAnisotropy* Scale = nullptr; // null: Method None
   /// The property, where the array of anisotropies has no value.
   double Wanted = 1.0;
+  /// Where planes take over from the texture; null: nowhere.
+  const noise::SubbandSeams* Seams = nullptr;
+  /// All of an image counts, with its residuals, whatever the metric.
+  bool WholeImage = false;
+  /// Antialiased weights are held at the variance of noise: not those that are no noise's.
+  bool Limited = true;
 
   double GetWavelength(vtkIdType point) const
   {
@@ -443,24 +453,41 @@ struct Evaluator
     }
   };
 
-  int Components() const { return this->Lay.Pyramid.Components(); }
+  /// Where the weights of a lookup begin in a tuple of all; of one after the last: their number.
+  int GetFirstComponent(std::size_t lookup) const
+  {
+    int first = 0;
+    for (std::size_t l = 0; l < lookup; ++l)
+    {
+      first += this->Lookups[l].Tiles->Components();
+    }
+    return first;
+  }
 
   /// Adds a point with this metric, in squared repeats of the tile; tells whether it was clamped.
-  bool AddPoint(Plane& plane, vtkIdType point, const Eigen::Vector2d& texture,
-    const Eigen::Matrix2d& metric, const Eigen::Matrix2d& footprint, double blend,
-    PointCounts& counts, vtkIdType first, int axis) const
+  bool AddPoint(std::vector<Plane>& planes, std::size_t which, vtkIdType point,
+    const Eigen::Vector2d& texture, const Eigen::Matrix2d& metric,
+    const Eigen::Matrix2d& footprint, double blend, PointCounts& counts, vtkIdType first) const
   {
-    const int components = this->Components();
-    double gamma[MaximumBands];
-    if (!texture.allFinite() || !this->Weights.Compute(metric, gamma))
+    Plane& plane = planes[which];
+    const Lookup& lookup = this->Lookups[which];
+    const int components = lookup.Tiles->Components();
+    double gamma[MostSubbandComponents];
+    std::fill(gamma + lookup.Lay->Pyramid.Components(), gamma + components, 0.0);
+    if (!texture.allFinite() || !lookup.Weights->Compute(metric, gamma))
     {
       return false;
     }
+    if (this->WholeImage)
+    {
+      std::fill_n(gamma, components, 1.0);
+    }
     if (this->OwnWeights)
     {
+      const int offset = this->GetFirstComponent(which);
       for (int c = 0; c < components; ++c)
       {
-        const double own = this->OwnWeights->GetComponent(first + point, axis * components + c);
+        const double own = this->OwnWeights->GetComponent(first + point, offset + c);
         gamma[c] = std::isfinite(own) ? own / blend : 0.0;
       }
     }
@@ -473,14 +500,15 @@ struct Evaluator
       plane.Gamma.push_back(blend * gamma[c]);
     }
     Eigen::Matrix2d clamped = metric;
-    if (this->Weights.GetParameters().Method == steerable::WeightMethod::None ||
-      blend * blend < VisibleBlend || !this->Weights.ClampMetric(clamped))
+    if (lookup.Weights->GetParameters().Method == steerable::WeightMethod::None ||
+      this->WholeImage || blend * blend < VisibleBlend || !lookup.Weights->ClampMetric(clamped))
     {
       return false;
     }
     // The range of the factors, from the range of eigenvalues.
-    const double smallest = std::pow(this->Lay.Pyramid.CenterFrequency(), -2.0);
-    const double largest = std::ldexp(smallest, 2 * (this->Lay.Pyramid.Scales - 1));
+    const steerable::SubbandParameters& pyramid = lookup.Lay->Pyramid;
+    const double smallest = std::pow(pyramid.CenterFrequency(), -2.0);
+    const double largest = std::ldexp(smallest, 2 * (pyramid.Scales - 1));
     const double mean = 0.5 * metric.trace();
     const double radius = std::hypot(0.5 * (metric(0, 0) - metric(1, 1)), metric(0, 1));
     const double low = std::max(mean - radius, 1e-12 * mean);
@@ -495,7 +523,7 @@ struct Evaluator
     vtkUnsignedCharArray* ghosts, vtkIdType begin, vtkIdType end) const
   {
     PointCounts counts;
-    std::vector<Plane> planes(this->Tiles.size());
+    std::vector<Plane> planes(this->Lookups.size());
     for (vtkIdType first = begin; first < end; first += ChunkSize)
     {
       const vtkIdType last = std::min(first + ChunkSize, end);
@@ -509,11 +537,11 @@ struct Evaluator
         here.Points = 1;
         if (block.Texture)
         {
-          this->AddTextured(*block.Surface, vectors, point, first, planes[0], here);
+          this->AddTextured(*block.Surface, vectors, point, first, planes, here);
         }
         else
         {
-          this->AddProjected(*block.Surface, vectors, point, first, planes, here);
+          this->AddProjected(*block.Surface, vectors, point, first, planes, 1.0, here);
         }
         if (!ghosts || !ghosts->GetValue(point))
         {
@@ -526,7 +554,7 @@ struct Evaluator
   }
 
   void AddTextured(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
-    vtkIdType point, vtkIdType first, Plane& plane, PointCounts& counts) const
+    vtkIdType point, vtkIdType first, std::vector<Plane>& planes, PointCounts& counts) const
   {
     SubbandSurface::PointMetrics metrics;
     const bool mapped = surface.ComputeTextured(point, vectors, this->GetSteering(point), metrics);
@@ -535,25 +563,48 @@ struct Evaluator
       const double ratio = mapped ? steerable::DistortionRatio(metrics.Isotropic) : 0.0;
       this->Distortion[point] = static_cast<float>(ratio);
     }
-    if (!mapped)
+    double share = mapped ? 1.0 : 0.0;
+    if (this->Seams)
+    {
+      if (mapped)
+      {
+        const int orientations = this->Lookups[0].Lay->Pyramid.Orientations;
+        const double wavelength = this->GetWavelength(point);
+        share = steerable::TextureBlend(steerable::DistortionRatio(metrics.Isotropic),
+          steerable::FollowedStretch(orientations),
+          this->Seams->GetDistance(surface.GetPoint(point), wavelength) / wavelength);
+      }
+      if (share < 1.0)
+      {
+        this->AddProjected(
+          surface, vectors, point, first, planes, std::sqrt(1.0 - share * share), counts);
+      }
+    }
+    else if (!mapped)
     {
       counts.Unmapped = 1;
+    }
+    if (!(share > 0.0))
+    {
       return;
     }
     counts.Undirected = vectors.Values && !metrics.Directed;
-    const double repeats = this->Lay.Repeats;
+    const double repeats = this->Lookups[0].Lay->Repeats;
     const double scale = repeats * this->GetWavelength(point);
-    counts.Clamped = this->AddPoint(plane, point - first, repeats * surface.GetTexture(point),
-      metrics.Metric * (scale * scale),
-      metrics.Footprint * (repeats * repeats), 1.0, counts, first, 0);
+    const bool clamped = this->AddPoint(planes, 0, point - first,
+      repeats * surface.GetTexture(point), metrics.Metric * (scale * scale),
+      metrics.Footprint * (repeats * repeats), share, counts, first);
+    counts.Clamped = counts.Clamped || clamped;
   }
 
+  /// `share`: of the projections beside the texture, squares summing to one.
   void AddProjected(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
-    vtkIdType point, vtkIdType first, std::vector<Plane>& planes, PointCounts& counts) const
+    vtkIdType point, vtkIdType first, std::vector<Plane>& planes, double share,
+    PointCounts& counts) const
   {
     SubbandSurface::PointFeatures features;
     const bool mapped = surface.ComputeProjected(point, vectors, this->GetSteering(point), features);
-    if (this->Distortion)
+    if (this->Distortion && !surface.IsTextured())
     {
       this->Distortion[point] =
         mapped ? static_cast<float>(1.0 / features.Normal.cwiseAbs().maxCoeff()) : 0.0f;
@@ -564,8 +615,10 @@ struct Evaluator
       return;
     }
     counts.Undirected = vectors.Values && !features.Directed;
-    const Eigen::Vector3d blend = steerable::TriplanarBlend(features.Normal);
-    const Eigen::Vector3d place = surface.GetPoint(point) * this->Lay.Repeats;
+    const Eigen::Vector3d blend = share * steerable::TriplanarBlend(features.Normal);
+    const std::size_t firstPlane = surface.IsTextured() ? 1 : 0;
+    const double repeats = this->Lookups[firstPlane].Lay->Repeats;
+    const Eigen::Vector3d place = surface.GetPoint(point) * repeats;
     const double wavelength = this->GetWavelength(point);
     const Eigen::Matrix3d feature = features.Feature * (wavelength * wavelength);
     for (int axis = 0; axis < 3; ++axis)
@@ -573,11 +626,11 @@ struct Evaluator
       if (blend[axis] > 0.0)
       {
         const steerable::TextureGradients gradients =
-          steerable::PlanarGradients(features.Normal, axis, 1.0 / this->Lay.Repeats);
+          steerable::PlanarGradients(features.Normal, axis, 1.0 / repeats);
         const Eigen::Vector2d texture(place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]);
-        const bool clamped = this->AddPoint(planes[axis], point - first, texture,
+        const bool clamped = this->AddPoint(planes, firstPlane + axis, point - first, texture,
           steerable::SurfaceMetric(gradients, feature),
-          gradients.transpose() * features.Spacing * gradients, blend[axis], counts, first, axis);
+          gradients.transpose() * features.Spacing * gradients, blend[axis], counts, first);
         counts.Clamped = counts.Clamped || clamped;
       }
     }
@@ -585,8 +638,7 @@ struct Evaluator
 
   void SumOctaves(const std::vector<Plane>& planes, vtkIdType first, vtkIdType count) const
   {
-    const int components = this->Components();
-    const vtkIdType tuple = components * static_cast<vtkIdType>(planes.size());
+    const vtkIdType tuple = this->GetFirstComponent(planes.size());
     std::vector<double> uv;
     std::vector<float> weights;
     std::vector<float> values;
@@ -599,14 +651,18 @@ struct Evaluator
       const std::array<double, 2> shift =
         octave == 0 ? std::array<double, 2>{} : steerable::TileOffset(octave, this->Seed);
       std::array<float, ChunkSize> noise{};
-      for (std::size_t axis = 0; axis < planes.size(); ++axis)
+      for (std::size_t which = 0; which < planes.size(); ++which)
       {
-        const Plane& plane = planes[axis];
+        const Plane& plane = planes[which];
+        const Lookup& lookup = this->Lookups[which];
+        const int bands = lookup.Lay->Pyramid.Components();
+        const int components = lookup.Tiles->Components();
+        const int offset = this->GetFirstComponent(which);
         const std::size_t points = plane.Points.size();
         uv.resize(2 * points);
         weights.resize(components * points);
         values.resize(points);
-        double beta[MaximumBands];
+        double beta[MostSubbandComponents];
         for (std::size_t n = 0; n < points; ++n)
         {
           uv[2 * n] = scale * plane.Texture[n][0] + shift[0];
@@ -614,20 +670,26 @@ struct Evaluator
           std::fill_n(beta, components, 1.0);
           if (this->AntiAlias)
           {
-            this->Weights.Antialias(plane.Footprints[n] * (scale * scale), beta);
+            const Eigen::Matrix2d footprint = plane.Footprints[n] * (scale * scale);
+            lookup.Weights->Antialias(footprint, beta);
+            if (components > bands)
+            {
+              lookup.Weights->AntialiasHigh(footprint, beta + bands);
+            }
           }
           for (int c = 0; c < components; ++c)
           {
             beta[c] *= plane.Gamma[n * components + c];
           }
-          if (this->AntiAlias)
+          if (this->AntiAlias && this->Limited)
           {
-            this->Weights.LimitVariance(plane.Blends[n] * plane.Blends[n], beta);
+            lookup.Weights->LimitVariance(plane.Blends[n] * plane.Blends[n], beta);
           }
           if (this->Factors)
           {
-            const int orientations = this->Lay.Pyramid.Orientations;
-            for (int c = 0; c < components; ++c)
+            const int orientations = lookup.Lay->Pyramid.Orientations;
+            // The low residual of an image has no orientation.
+            for (int c = 0; c < (components > bands ? components - 1 : components); ++c)
             {
               beta[c] *= this->Factors->GetComponent(
                 first + plane.Points[n], octave * orientations + c % orientations);
@@ -635,7 +697,7 @@ struct Evaluator
           }
           std::copy(beta, beta + components, weights.begin() + n * components);
         }
-        steerable::SumSubbands(this->Tiles[axis], steerable::TileLookup::CatmullRom, points,
+        steerable::SumSubbands(*lookup.Tiles, steerable::TileLookup::CatmullRom, points,
           uv.data(), weights.data(), values.data());
         for (std::size_t n = 0; n < points; ++n)
         {
@@ -643,7 +705,7 @@ struct Evaluator
           if (this->WeightArray && octave == 0)
           {
             std::copy_n(weights.data() + n * components, components,
-              this->WeightArray + (first + plane.Points[n]) * tuple + axis * components);
+              this->WeightArray + (first + plane.Points[n]) * tuple + offset);
           }
         }
       }
@@ -656,6 +718,51 @@ struct Evaluator
     std::copy_n(sum.begin(), count, this->Noise + first);
   }
 };
+
+/// The tiles that an image of bands holds, made by SubbandDecomposition or SubbandNoiseTiles.
+steerable::SubbandTiles ReadTiles(vtkImageData* image)
+{
+  const auto require = [](bool condition, const std::string& what)
+  {
+    if (!condition)
+    {
+      throw std::invalid_argument(what);
+    }
+  };
+  vtkDataArray* array = image ? image->GetPointData()->GetArray("Subbands") : nullptr;
+  vtkDataArray* center =
+    image ? image->GetFieldData()->GetArray(noise::BandCenterName) : nullptr;
+  steerable::SubbandTiles tiles;
+  steerable::SubbandParameters& pyramid = tiles.Parameters;
+  require(array && center && noise::CountSubbands(array, pyramid.Orientations, pyramid.Scales),
+    "The image has no bands. Take that of Subband Decomposition.");
+  int sides[3];
+  image->GetDimensions(sides);
+  require(sides[0] == sides[1] && sides[2] == 1,
+    "The image of bands has " + std::to_string(sides[0]) + " x " + std::to_string(sides[1]) + " x " +
+      std::to_string(sides[2]) + " points; a tile is square and flat in z. Resample the image first.");
+  pyramid.TileSize = sides[0];
+  pyramid.BandCenter = center->GetTuple1(0);
+  pyramid.Validate();
+  const int given = array->GetNumberOfComponents();
+  if (given == steerable::ImageComponents(pyramid))
+  {
+    tiles.Residuals = given - pyramid.Components();
+  }
+  vtkDataArray* ranges = image->GetFieldData()->GetArray("SubbandRanges"); // of bytes
+  const int components = tiles.Components();
+  tiles.Values.resize(static_cast<std::size_t>(array->GetNumberOfTuples()) * components);
+  for (vtkIdType texel = 0; texel < array->GetNumberOfTuples(); ++texel)
+  {
+    for (int c = 0; c < components; ++c)
+    {
+      const double value = array->GetComponent(texel, c);
+      tiles.Values[texel * components + c] = static_cast<float>(
+        ranges ? (value / 127.5 - 1.0) * ranges->GetComponent(c, 0) : value);
+    }
+  }
+  return tiles;
+}
 
 /// Collects the surfaces of the input, and what to say about the rest.
 class BlockFinder
@@ -692,7 +799,10 @@ public:
 private:
   bool FindTexture(Block& block)
   {
-    if (this->Self->GetParameterization() == vtkPolyDataSubbandNoise::TRIPLANAR)
+    const int choice = this->Self->GetNumberOfInputConnections(1) > 0
+      ? vtkPolyDataSubbandNoise::TEXTURE_COORDINATES
+      : this->Self->GetParameterization();
+    if (choice == vtkPolyDataSubbandNoise::TRIPLANAR)
     {
       return true;
     }
@@ -703,7 +813,7 @@ private:
       block.Texture = texture;
       return true;
     }
-    if (this->Self->GetParameterization() == vtkPolyDataSubbandNoise::AUTOMATIC)
+    if (choice == vtkPolyDataSubbandNoise::AUTOMATIC)
     {
       return true;
     }
@@ -763,6 +873,7 @@ private:
 vtkPolyDataSubbandNoise::vtkPolyDataSubbandNoise()
   : Cache(new Internals)
 {
+  this->SetNumberOfInputPorts(2);
   this->SetResultArrayName("SubbandNoise");
   this->SetController(vtkMultiProcessController::GetGlobalController());
 }
@@ -798,9 +909,27 @@ void vtkPolyDataSubbandNoise::SetPhase(double phase)
 }
 
 //------------------------------------------------------------------------------
-int vtkPolyDataSubbandNoise::FillInputPortInformation(int, vtkInformation* info)
+void vtkPolyDataSubbandNoise::SetSubbandsConnection(vtkAlgorithmOutput* bands)
+{
+  this->SetInputConnection(1, bands);
+}
+
+//------------------------------------------------------------------------------
+void vtkPolyDataSubbandNoise::SetSubbandsData(vtkImageData* bands)
+{
+  this->SetInputDataObject(1, bands);
+}
+
+//------------------------------------------------------------------------------
+int vtkPolyDataSubbandNoise::FillInputPortInformation(int port, vtkInformation* info)
 {
   info->Remove(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE());
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+    return 1;
+  }
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
   info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   return 1;
@@ -814,6 +943,14 @@ int vtkPolyDataSubbandNoise::RequestUpdateExtent(
   using SDDP = vtkStreamingDemandDrivenPipeline;
   inputVector[0]->GetInformationObject(0)->Set(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS(),
     outputVector->GetInformationObject(0)->Get(SDDP::UPDATE_NUMBER_OF_GHOST_LEVELS()) + 1);
+  if (this->GetNumberOfInputConnections(1) > 0)
+  {
+    // Each rank looks up all of the image.
+    vtkInformation* image = inputVector[1]->GetInformationObject(0);
+    int whole[6];
+    image->Get(SDDP::WHOLE_EXTENT(), whole);
+    image->Set(SDDP::UPDATE_EXTENT(), whole, 6);
+  }
   return 1;
 }
 
@@ -893,24 +1030,43 @@ int vtkPolyDataSubbandNoise::RequestData(
     addMesh(vtkPolyData::SafeDownCast(output));
   }
 
-  // Everything that ranks do together comes before anything that may fail on one of them.
+  // What fails on this rank is told of after everything that ranks do together: the others wait for it.
+  std::string failure;
+  const auto attempt = [&failure](const auto& work)
+  {
+    try
+    {
+      if (failure.empty())
+      {
+        work();
+      }
+    }
+    catch (const std::exception& error)
+    {
+      failure = error.what();
+    }
+  };
+  const bool ofImage = this->GetNumberOfInputConnections(1) > 0;
+  steerable::SubbandTiles imageTiles;
+  if (ofImage && !blocks.empty())
+  {
+    attempt([&] { imageTiles = ReadTiles(vtkImageData::GetData(inputVector[1])); });
+  }
+  const bool blendSeams = this->BlendSeams && !ofImage;
   bounds.Reduce(this->Controller);
   const double diagonal = bounds.GetDiagonal();
-  std::string failure;
-  std::string lateFailure; // after what all ranks do together
-  try
-  {
-    for (Block& block : blocks)
+  attempt(
+    [&]
     {
-      block.Surface = std::make_unique<SubbandSurface>(block.Mesh, block.Texture, this->WrapSeams);
-      block.Surface->AddTo(sums, diagonal);
-      ++sums[block.Texture ? SurfaceSums::TexturedBlocks : SurfaceSums::ProjectedBlocks];
-    }
-  }
-  catch (const std::exception& error)
-  {
-    failure = error.what();
-  }
+      for (Block& block : blocks)
+      {
+        block.Surface =
+          std::make_unique<SubbandSurface>(
+            block.Mesh, block.Texture, this->WrapSeams, blendSeams);
+        block.Surface->AddTo(sums, diagonal);
+        ++sums[block.Texture ? SurfaceSums::TexturedBlocks : SurfaceSums::ProjectedBlocks];
+      }
+    });
   const SurfaceSums local = sums;
   Reduce(this->Controller, sums.Values.data(), sums.Values.size(), vtkCommunicator::SUM_OP);
 
@@ -923,10 +1079,6 @@ int vtkPolyDataSubbandNoise::RequestData(
   if (failure.empty() && local[SurfaceSums::OtherBlocks] > 0 && nothing && blocksWithout == 0)
   {
     failure = "The input holds no surface but " + otherType + ". Extract its surface first.";
-  }
-  if (!failure.empty())
-  {
-    return refuse(failure);
   }
 
   // K directions make features rounder than the metric says: it has to say more.
@@ -942,6 +1094,10 @@ int vtkPolyDataSubbandNoise::RequestData(
     std::numeric_limits<double>::infinity(), -1.0 };
   for (Block& block : blocks)
   {
+    if (!failure.empty())
+    {
+      break;
+    }
     const auto find = [&](const std::string& name, const char* property) -> vtkDataArray*
     {
       vtkDataArray* array =
@@ -950,7 +1106,7 @@ int vtkPolyDataSubbandNoise::RequestData(
         (!array || array->GetNumberOfComponents() > 3 ||
           array->GetNumberOfTuples() < block.Mesh->GetNumberOfPoints()))
       {
-        lateFailure = "Array '" + name + "' for " + property +
+        failure = "Array '" + name + "' for " + property +
           " is not on the points with 1 to 3 components. Choose another one, or None.";
         return nullptr;
       }
@@ -1013,18 +1169,43 @@ int vtkPolyDataSubbandNoise::RequestData(
 
   // Charts smaller than a wavelength leave no noise but seams.
   double charts[3] = { 0.0, 0.0, 0.0 }; // their area, that of all, and their number
-  for (const Block& block : blocks)
-  {
-    if (this->Parameterization == AUTOMATIC && block.Texture)
+  attempt(
+    [&]
     {
-      const SubbandSurface::Charts small = block.Surface->FindChartsBelow(wavelength);
-      charts[0] += SurfaceSums::RoundArea(small.Area, diagonal);
-      charts[1] += SurfaceSums::RoundArea(small.WholeArea, diagonal);
-      charts[2] += small.Count;
-    }
-  }
+      for (const Block& block : blocks)
+      {
+        if (this->Parameterization == AUTOMATIC && block.Texture && !ofImage)
+        {
+          const SubbandSurface::Charts small = block.Surface->FindChartsBelow(wavelength);
+          charts[0] += SurfaceSums::RoundArea(small.Area, diagonal);
+          charts[1] += SurfaceSums::RoundArea(small.WholeArea, diagonal);
+          charts[2] += small.Count;
+        }
+      }
+    });
   Reduce(this->Controller, charts, 3, vtkCommunicator::SUM_OP);
   const bool shattered = charts[0] > 0.5 * charts[1];
+  noise::SubbandSeams seams;
+  if (blendSeams)
+  {
+    attempt(
+      [&]
+      {
+        for (const Block& block : blocks)
+        {
+          if (block.Texture && !shattered)
+          {
+            seams.Add(*block.Surface);
+          }
+        }
+      });
+    seams.Gather(this->Controller);
+    seams.Build();
+  }
+  if (!failure.empty())
+  {
+    return refuse(failure);
+  }
 
   const double mapped = sums[SurfaceSums::RegularArea] + sums[SurfaceSums::FlippedArea];
   const bool mirrored = sums[SurfaceSums::FlippedArea] > 0.5 * mapped;
@@ -1037,18 +1218,22 @@ int vtkPolyDataSubbandNoise::RequestData(
   double textureRepeats = 1.0;
   try
   {
-    if (!lateFailure.empty())
-    {
-      throw std::invalid_argument(lateFailure);
-    }
     steerable::SubbandParameters pyramid;
     pyramid.Orientations = this->Orientations;
     pyramid.TileSize = this->TileSize;
     pyramid.Seed = static_cast<std::uint32_t>(this->Seed);
-    const Layout layouts[2] = { LayOnPlanes(pyramid, wavelengths, mostSteering),
+    Layout layouts[2] = { LayOnPlanes(pyramid, wavelengths, mostSteering),
       LayOnTexture(pyramid, sums, diagonal > 0.0 ? diagonal : 1.0, wavelengths, mostSteering) };
+    if (ofImage)
+    {
+      // It lies where texture coordinates say.
+      layouts[1] = Layout();
+      layouts[1].Pyramid = imageTiles.Parameters;
+    }
     textureRepeats = layouts[1].Repeats;
     std::unique_ptr<steerable::SubbandWeights> solvers[2];
+    const auto method = static_cast<steerable::WeightMethod>(this->Method);
+    const bool wholeImage = ofImage && method == steerable::WeightMethod::None;
     for (std::size_t b = 0; b < blocks.size() && !this->GetAbortOutput(); ++b)
     {
       Block& block = blocks[b];
@@ -1063,19 +1248,39 @@ int vtkPolyDataSubbandNoise::RequestData(
         block.Surface->Avoid(
           mirrored ? steerable::TriangleMapping::Regular : steerable::TriangleMapping::Flipped);
       }
-      const Layout& layout = layouts[textured];
-      const int planes = textured ? 1 : 3;
-      if (!solvers[textured])
+      std::vector<Lookup> lookups;
+      const auto addLookups = [&](bool ofTexture, int firstPlane)
       {
-        steerable::SubbandWeightParameters parameters;
-        parameters.Pyramid = layout.Pyramid;
-        parameters.Method = static_cast<steerable::WeightMethod>(this->Method);
-        parameters.FixedScale = layout.FixedScale;
-        parameters.RadialTriple = this->RadialTriple;
-        solvers[textured] = std::make_unique<steerable::SubbandWeights>(parameters);
+        const Layout& layout = layouts[ofTexture];
+        if (!solvers[ofTexture])
+        {
+          steerable::SubbandWeightParameters parameters;
+          parameters.Pyramid = layout.Pyramid;
+          // All of an image needs no weights, but the best filter.
+          parameters.Method = wholeImage ? steerable::WeightMethod::LeastSquares : method;
+          parameters.FixedScale = layout.FixedScale;
+          parameters.RadialTriple = this->RadialTriple;
+          solvers[ofTexture] = std::make_unique<steerable::SubbandWeights>(parameters);
+        }
+        if (ofImage)
+        {
+          lookups.push_back({ &layout, solvers[ofTexture].get(), &imageTiles });
+          return;
+        }
+        TileCache& cache = ofTexture ? this->Cache->TextureTiles
+          : firstPlane == 0          ? this->Cache->PlaneTiles
+                                     : this->Cache->SeamTiles;
+        for (const auto& tiles :
+          cache.Update(layout.Pyramid, this->Phase, ofTexture ? 1 : 3, firstPlane))
+        {
+          lookups.push_back({ &layout, solvers[ofTexture].get(), &tiles });
+        }
+      };
+      addLookups(textured, 0);
+      if (textured && blendSeams)
+      {
+        addLookups(false, 1);
       }
-      const auto& tiles = (textured ? this->Cache->TextureTiles : this->Cache->PlaneTiles)
-                            .Update(layout.Pyramid, this->Phase, planes);
 
       const vtkIdType points = block.Mesh->GetNumberOfPoints();
       noise::SteeringVectors vectors;
@@ -1091,8 +1296,11 @@ int vtkPolyDataSubbandNoise::RequestData(
         vectors.Cells = block.CellVectors;
       }
 
-      Evaluator evaluator{ layout, *solvers[textured], tiles, wavelength, anisotropy, this->Octaves,
-        this->Persistence, this->Function == TURBULENCE, this->AntiAlias, pyramid.Seed };
+      Evaluator evaluator{ lookups, wavelength, anisotropy, this->Octaves, this->Persistence,
+        this->Function == TURBULENCE, this->AntiAlias, pyramid.Seed };
+      evaluator.Seams = textured && blendSeams ? &seams : nullptr;
+      evaluator.WholeImage = wholeImage;
+      evaluator.Limited = !wholeImage && !(ofImage && !ownWeights.empty());
       auto result = noise::NewOutputArray(this->ResultArrayName, 1, points);
       evaluator.Noise = result->GetPointer(0);
       evaluator.WavelengthArray = block.Wavelengths;
@@ -1110,19 +1318,24 @@ int vtkPolyDataSubbandNoise::RequestData(
       };
       if (!ownWeights.empty())
       {
-        const int needed = planes * layout.Pyramid.Components();
+        const int needed = evaluator.GetFirstComponent(lookups.size());
         evaluator.OwnWeights = find(ownWeights, needed);
         if (!evaluator.OwnWeights)
         {
           throw std::invalid_argument("Weights '" + ownWeights + "' are not on the points with " +
-            std::to_string(needed) + " components (" + std::to_string(layout.Pyramid.Orientations) +
-            " orientations, " + std::to_string(layout.Pyramid.Scales) + " scales" +
-            (textured ? "" : ", 3 planes") + "). OutputWeights adds such an array to begin with.");
+            std::to_string(needed) + " components (" +
+            std::to_string(lookups[0].Lay->Pyramid.Orientations) + " orientations, " +
+            std::to_string(lookups[0].Lay->Pyramid.Scales) + " scales" +
+            (lookups.size() > 3 ? ", and 3 planes with " +
+                  std::to_string(lookups[1].Lay->Pyramid.Scales)
+                : lookups.size() > 1 ? ", 3 planes"
+                : imageTiles.Residuals > 0 ? ", residuals" : "") +
+            "). OutputWeights adds such an array to begin with.");
         }
       }
       if (!factorsName.empty())
       {
-        const int needed = this->Octaves * layout.Pyramid.Orientations;
+        const int needed = this->Octaves * lookups[0].Lay->Pyramid.Orientations;
         evaluator.Factors = find(factorsName, needed);
         if (!evaluator.Factors)
         {
@@ -1132,13 +1345,20 @@ int vtkPolyDataSubbandNoise::RequestData(
       }
       if (this->OutputWeights)
       {
-        const int components = layout.Pyramid.Components();
-        auto array = noise::NewOutputArray("SubbandWeights", planes * components, points);
+        auto array = noise::NewOutputArray(
+          "SubbandWeights", evaluator.GetFirstComponent(lookups.size()), points);
         array->Fill(0.0);
-        for (int plane = 0; plane < planes; ++plane)
+        for (std::size_t l = 0; l < lookups.size(); ++l)
         {
-          noise::NameSubbands(array, layout.Pyramid.Orientations, layout.Pyramid.Scales,
-            textured ? std::string() : std::string(1, "xyz"[plane]), plane * components);
+          const bool onTexture = textured && l == 0;
+          const steerable::SubbandParameters& bands = lookups[l].Lay->Pyramid;
+          const int first = evaluator.GetFirstComponent(l);
+          noise::NameSubbands(array, bands.Orientations, bands.Scales,
+            onTexture ? std::string() : std::string(1, "xyz"[textured ? l - 1 : l]), first);
+          if (lookups[l].Tiles->Residuals > 0)
+          {
+            noise::NameResiduals(array, bands.Orientations, first + bands.Components());
+          }
         }
         evaluator.WeightArray = array->GetPointer(0);
         pointData->AddArray(array);
@@ -1236,7 +1456,8 @@ int vtkPolyDataSubbandNoise::RequestData(
   // Octaves that are too fine fade with AntiAlias.
   const double thinnest = wavelengths.Shortest / std::sqrt(wanted) /
     (this->AntiAlias ? 1.0 : std::ldexp(1.0, this->Octaves - 1));
-  if (!blocks.empty() && spacing > 0.0 && thinnest < 0.999 * PointsPerWavelength * spacing)
+  if (!blocks.empty() && !(ofImage && this->Method == NONE) && spacing > 0.0 &&
+    thinnest < 0.999 * PointsPerWavelength * spacing)
   {
     message << "\nThe points are " << spacing << " apart: " << thinnest / spacing
             << " to a wavelength of " << thinnest << ", where " << PointsPerWavelength
@@ -1267,6 +1488,7 @@ void vtkPolyDataSubbandNoise::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Function: " << this->Function << "\n";
   os << indent << "AntiAlias: " << this->AntiAlias << "\n";
   os << indent << "WrapSeams: " << this->WrapSeams << "\n";
+  os << indent << "BlendSeams: " << this->BlendSeams << "\n";
   os << indent << "TileSize: " << this->TileSize << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "Phase: " << this->Phase << "\n";

@@ -24,7 +24,7 @@
  * charts are, and both sides count. Points without any triangle get 0.
  *
  * @sa
- * vtkImageSubbandNoiseSource vtkSteerableNoiseFilter
+ * vtkImageSubbandNoiseSource vtkImageSubbandDecomposition vtkSteerableNoiseFilter
  */
 #ifndef vtkPolyDataSubbandNoise_h
 #define vtkPolyDataSubbandNoise_h
@@ -32,6 +32,7 @@
 #include "SteerableNoiseFiltersModule.h" // For export macro
 #include "vtkPassInputTypeAlgorithm.h"
 
+class vtkImageData;
 class vtkMultiProcessController;
 
 class STEERABLENOISEFILTERS_EXPORT vtkPolyDataSubbandNoise : public vtkPassInputTypeAlgorithm
@@ -88,6 +89,20 @@ public:
    * and finite, and anisotropies that are not finite, are those of the properties; the others are
    * kept from 1 to 8. All blocks must have them.
    */
+
+  ///@{
+  /**
+   * Optional second input: bands of an image in place of the tiles of noise, made by
+   * vtkImageSubbandDecomposition (or vtkImageSubbandNoiseSource). The image is square and lies at
+   * the texture coordinates, once for each repeat; there is no other Parameterization. With the
+   * methods its bands are weighted like those of noise; with NONE all of them count, with the
+   * residuals: the image itself, which AntiAlias filters for the points of the mesh (paper, Fig.
+   * 8). Weights of the user's own then have components as the image has. Wavelength counts with the
+   * other methods; Orientations, TileSize, Seed, Phase and BlendSeams do not.
+   */
+  void SetSubbandsConnection(vtkAlgorithmOutput* bands);
+  void SetSubbandsData(vtkImageData* bands);
+  ///@}
 
   ///@{
   /**
@@ -188,6 +203,18 @@ public:
 
   ///@{
   /**
+   * Let noise of planar projections take over where texture coordinates cannot carry noise, default
+   * off: within a wavelength of seams, at which they jump by other steps than whole repeats or turn
+   * back, and where they are stretched more than Orientations follow, as next to the poles of a
+   * sphere (paper, Fig. 12). The variance stays. Seams between blocks do not count.
+   */
+  vtkSetMacro(BlendSeams, bool);
+  vtkGetMacro(BlendSeams, bool);
+  vtkBooleanMacro(BlendSeams, bool);
+  ///@}
+
+  ///@{
+  /**
    * Texels along each axis of a tile, 64 to 1024, default 256. Larger tiles repeat later and have room
    * for more scales (256: 5, 512: 6), so texture coordinates may be stretched more unevenly.
    */
@@ -216,8 +243,8 @@ public:
   ///@{
   /**
    * Adds the weights of the first octave as the float array "SubbandWeights", named o<i>s<j>: one
-   * component for each orientation and scale, three times as many where three projections are blended.
-   * Default off.
+   * component for each orientation and scale, three times as many where three projections are
+   * blended; with BlendSeams those of the projections follow the texture's. Default off.
    */
   vtkSetMacro(OutputWeights, bool);
   vtkGetMacro(OutputWeights, bool);
@@ -263,6 +290,7 @@ protected:
   int Function = FRACTAL;
   bool AntiAlias = true;
   bool WrapSeams = false;
+  bool BlendSeams = false;
   int TileSize = 256;
   int Seed = 0;
   double Phase = 0.0;

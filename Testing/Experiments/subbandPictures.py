@@ -252,6 +252,19 @@ def meshes():
     compare(
         "subband-latlong.png", texture.GetOutput(), (1.0, 0.4, 0.9), (0, 0, 1), 1.45, Wavelength=0.06, WrapSeams=1
     )
+    # From above, where the image of the texture turns back too: it is the same on both sides of a plane.
+    texture.PreventSeamOn()
+    texture.Update()
+    compare(
+        "subband-poles.png",
+        texture.GetOutput(),
+        (0.1, 0.3, 1.0),
+        (0, 1, 0),
+        1.45,
+        first=dict(BlendSeams=0),
+        Wavelength=0.06,
+        BlendSeams=1,
+    )
     compare("subband-artery.png", refine(read("carotid_iso150.vtp"), 2), (1.0, 0.6, 0.4), (0, 0, 1), 2.6, Wavelength=2.2)
     compare(
         "subband-wind.png",

@@ -2,14 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkPolyDataSubbandNoise: arrays, cells, composites, steering, options, bad input, real meshes.
 #include "FilterTestHelpers.h"
+#include "SubbandFilters.h"
+#include "SubbandTiles.h"
 #include "SurfaceMetric.h"
 
+#include "vtkAppendPolyData.h"
 #include "vtkCellArray.h"
 #include "vtkPoints.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
+#include "vtkImageSubbandDecomposition.h"
+#include "vtkImageSubbandNoiseSource.h"
 #include "vtkInformation.h"
 #include "vtkIntArray.h"
 #include "vtkLoopSubdivisionFilter.h"
@@ -723,7 +728,15 @@ TEST(PolyDataSubbandNoise, WavelengthAndAnisotropyComeFromArrays)
     filter->SetInputArrayToProcess(
       which, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, name);
   };
-  const int n = 129;
+  // Statistics want all points; under a sanitizer, where that takes minutes, the same code runs on fewer.
+#ifdef STEERABLENOISE_INSTRUMENTED
+  constexpr bool statistics = false;
+#else
+  constexpr bool statistics = true;
+#endif
+  const int n = statistics ? 129 : 65;
+  const int seeds = statistics ? 4 : 1;
+  const double shorter = statistics ? 0.1 : 0.2; // 12 points in a wavelength
   for (const bool texture : { true, false })
   {
     // The same value everywhere is the property; what is not one is the property's.
@@ -751,13 +764,13 @@ TEST(PolyDataSubbandNoise, WavelengthAndAnisotropyComeFromArrays)
     double steep[2] = { 0.0, 0.0 };
     double power[2] = { 0.0, 0.0 };
     Eigen::Matrix2d tensor[2] = { Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero() };
-    for (int seed = 0; seed < 4; ++seed)
+    for (int seed = 0; seed < seeds; ++seed)
     {
       for (const bool lengths : { false, true })
       {
-        AddValues(mesh, "wavelength", 1, [&](vtkIdType i) { return i % n < n / 2 ? 0.1 : 0.2; });
+        AddValues(mesh, "wavelength", 1, [&](vtkIdType i) { return i % n < n / 2 ? shorter : 2.0 * shorter; });
         AddValues(mesh, "length", 1, [&](vtkIdType i) { return i % n < n / 2 ? 1.0 : 4.0; });
-        const std::vector<float> noise = Noise(mesh, lengths ? 0.2 : 0.1,
+        const std::vector<float> noise = Noise(mesh, lengths ? 2.0 * shorter : shorter,
           [&](Filter* filter)
           {
             filter->SetAntiAlias(false);
@@ -795,6 +808,10 @@ TEST(PolyDataSubbandNoise, WavelengthAndAnisotropyComeFromArrays)
           }
         }
       }
+    }
+    if (!statistics)
+    {
+      continue;
     }
     EXPECT_NEAR(std::sqrt(steep[1] / power[1] / (steep[0] / power[0])), 2.0, 0.3) << texture;
     const auto ratio = [](const Eigen::Matrix2d& t)
@@ -1124,6 +1141,473 @@ TEST(PolyDataSubbandNoise, SeamsOfWholeRepeatsDoNotShow)
   const auto straddling = Noise(closed, 1.0, {}, &text);
   EXPECT_NE(text.find("128 are folded over"), std::string::npos) << text;
   EXPECT_LT(LargestDifference(straddling, wrapped), 0.5);
+}
+
+/// A sphere by longitude u and latitude v: the seam repeats points one u further, poles have many.
+Eigen::Vector3d LongLat(double u, double v)
+{
+  if (v == 0.0 || v == 1.0)
+  {
+    return { 0.0, 0.0, v == 0.0 ? 1.0 : -1.0 };
+  }
+  const double angle = 2.0 * Pi * (u == 1.0 ? 0.0 : u);
+  return { std::sin(Pi * v) * std::cos(angle), std::sin(Pi * v) * std::sin(angle),
+    std::cos(Pi * v) };
+}
+
+TEST(PolyDataSubbandNoise, BlendSeamsClosesPoles)
+{
+  const int n = 193;
+  auto sphere = Sheet(n, LongLat);
+  const auto values = [&](bool blend, int seed, int orientations = 8)
+  {
+    std::string text; // of triangles without area at the poles
+    return Noise(
+      sphere, 0.3,
+      [&](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetBlendSeams(blend);
+        filter->SetSeed(seed);
+        filter->SetAntiAlias(false);
+        filter->SetOrientations(orientations);
+      },
+      &text);
+  };
+  // Copies of the poles, and of the seam, and what is far from both.
+  for (const int orientations : { 8, 4 })
+  {
+    const auto off = values(false, 0, orientations);
+    const auto on = values(true, 0, orientations);
+    for (const int row : { 0, n - 1 })
+    {
+      // But for the copies in the corners, one of which has no triangle with an area.
+      const int begin = row * n + 1, end = (row + 1) * n - 1;
+      const auto [least, most] = std::minmax_element(on.begin() + begin, on.begin() + end);
+      EXPECT_LT(*most - *least, 1e-5);
+      const auto [low, high] = std::minmax_element(off.begin() + begin, off.begin() + end);
+      EXPECT_GT(*high - *low, 1.0) << "without it they differ";
+    }
+    int same = 0;
+    for (int y = 0; y < n; ++y)
+    {
+      if (y % (n - 1) != 0)
+      {
+        EXPECT_NEAR(on[y * n], on[y * n + n - 1], 1e-4);
+      }
+      // Longitude to latitude is stretched by 2 sin or its inverse.
+      const double sine = std::sin(Pi * y / (n - 1));
+      const double stretch = std::max(2.0 * sine, 0.5 / sine);
+      const bool near = 2.0 * std::sin(0.5 * Pi * std::min(y, n - 1 - y) / (n - 1)) < 0.31;
+      for (int x = 0; x < n && !near && stretch < 0.48 * orientations; ++x, ++same)
+      {
+        ASSERT_EQ(on[y * n + x], off[y * n + x]) << x << " " << y;
+      }
+    }
+    EXPECT_GT(same, n * n / (orientations == 8 ? 2 : 4));
+  }
+}
+
+TEST(PolyDataSubbandNoise, BlendSeamsKeepsTheVariance)
+{
+  const int n = 97;
+  std::string text;
+  auto output = AddNoise(
+    Sheet(n, LongLat), 0.6,
+    [](vtkPolyDataSubbandNoise* filter)
+    {
+      filter->SetBlendSeams(true);
+      filter->SetAntiAlias(false);
+      filter->SetOutputWeights(true);
+      filter->SetOrientations(6);
+    },
+    &text);
+  vtkDataArray* weights = output->GetPointData()->GetArray("SubbandWeights");
+  ASSERT_NE(weights, nullptr);
+  const int components = weights->GetNumberOfComponents();
+  int first[5] = { 0, 0, 0, 0, components };
+  for (int c = components - 1; c >= 0; --c)
+  {
+    const std::string name = weights->GetComponentName(c);
+    const std::size_t plane = name[0] == 'o' ? 0 : name[0] - 'x' + 1;
+    first[plane] = c;
+  }
+  steerable::SubbandParameters pyramid;
+  pyramid.Orientations = 6;
+  int blended = 0;
+  for (vtkIdType point = 0; point < weights->GetNumberOfTuples(); ++point)
+  {
+    double variance = 0.0;
+    double texture = 0.0;
+    for (int lookup = 0; lookup < 4; ++lookup)
+    {
+      pyramid.Scales = (first[lookup + 1] - first[lookup]) / 6;
+      Eigen::MatrixXd gamma(6, pyramid.Scales);
+      for (int c = 0; c < gamma.size(); ++c)
+      {
+        gamma(c) = weights->GetComponent(point, first[lookup] + c);
+      }
+      variance += steerable::SubbandVariance(pyramid, gamma);
+      texture = lookup == 0 ? variance : texture;
+    }
+    if (point != n - 1 && point != n * (n - 1)) // they have no triangle with an area
+    {
+      EXPECT_NEAR(variance, 1.0, 1e-5) << point;
+    }
+    blended += texture > 0.1 && texture < 0.9;
+    // The texture's share, squared, by its stretch (6 orientations follow 3) and the distance.
+    const double sine = std::sin(Pi * (point / n) / (n - 1));
+    const double stretch = std::max(2.0 * sine, 0.5 / sine);
+    const double distance = 2.0 * std::sin(0.5 * std::asin(std::min(1.0, sine))) / 0.6;
+    const double expected = std::pow(steerable::TextureBlend(stretch, 3.0, distance), 2);
+    EXPECT_NEAR(texture, expected, 0.03) << point;
+    if (stretch > 5.0)
+    {
+      EXPECT_EQ(texture, 0.0) << point;
+    }
+  }
+  EXPECT_GT(blended, n);
+
+  // Those weights are taken back, with as many components as there are.
+  output->GetPointData()->RemoveArray("SubbandNoise");
+  vtkNew<vtkPolyDataSubbandNoise> again;
+  auto messages = Listen(again);
+  again->SetInputData(output);
+  again->SetWavelength(0.6);
+  again->SetAntiAlias(false);
+  again->SetOrientations(6);
+  again->SetInputArrayToProcess(vtkPolyDataSubbandNoise::WEIGHTS_ARRAY, 0, 0,
+    vtkDataObject::FIELD_ASSOCIATION_POINTS, "SubbandWeights");
+  again->Update();
+  EXPECT_NE(messages->Text.find("are not on the points with"), std::string::npos);
+  again->SetBlendSeams(true);
+  again->Update();
+  const auto expected = Noise(
+    Sheet(n, LongLat), 0.6,
+    [](vtkPolyDataSubbandNoise* filter)
+    {
+      filter->SetBlendSeams(true);
+      filter->SetAntiAlias(false);
+      filter->SetOrientations(6);
+    },
+    &text);
+  EXPECT_LT(LargestDifference(Values(again->GetOutputDataObject(0), "SubbandNoise"), expected), 1e-4);
+}
+
+TEST(PolyDataSubbandNoise, BlendSeamsHidesJumpsAndMirrors)
+{
+  const int n = 129; // a sheet of sides 1, wavelength 0.1
+  const auto noiseOf = [](vtkPolyData* mesh, bool blend)
+  {
+    return Noise(mesh, 0.1,
+      [blend](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetBlendSeams(blend);
+        filter->SetParameterization(vtkPolyDataSubbandNoise::TEXTURE_COORDINATES);
+      });
+  };
+  // Mirrored at the middle.
+  auto mirrored = FlatSheet(n);
+  vtkDataArray* texture = mirrored->GetPointData()->GetTCoords();
+  for (vtkIdType i = 0; i < n * n; ++i)
+  {
+    texture->SetComponent(i, 0, std::abs(2.0 * (i % n) / (n - 1) - 1.0));
+  }
+  const auto off = noiseOf(mirrored, false);
+  const auto on = noiseOf(mirrored, true);
+  const auto likeness = [&](const std::vector<float>& noise, int column)
+  {
+    double product = 0.0, left = 0.0, right = 0.0;
+    for (int y = 0; y < n; ++y)
+    {
+      const double a = noise[y * n + n / 2 - column], b = noise[y * n + n / 2 + column];
+      product += a * b;
+      left += a * a;
+      right += b * b;
+    }
+    return product / std::sqrt(left * right);
+  };
+  EXPECT_GT(likeness(off, 4), 0.999);
+  EXPECT_LT(std::abs(likeness(on, 4)), 0.6); // a third of a wavelength to both sides
+  for (int y = 0; y < n; ++y)
+  {
+    for (int x = 0; x < n; ++x)
+    {
+      if (std::abs(x - n / 2) > 13)
+      {
+        ASSERT_EQ(on[y * n + x], off[y * n + x]) << x << " " << y;
+      }
+    }
+  }
+
+  // Two sheets side by side, whose textures do not go on.
+  const auto half = [](double shift)
+  { return [=](double u, double v) { return Eigen::Vector3d(0.5 * u + shift, v, 0.0); }; };
+  auto parts = Sheet(65, half(0.0), CellKind::Quads);
+  auto right = Sheet(65, half(0.5), CellKind::Quads);
+  vtkNew<vtkAppendPolyData> append;
+  append->AddInputData(parts);
+  for (vtkIdType i = 0; i < 65 * 65; ++i)
+  {
+    right->GetPointData()->GetTCoords()->SetComponent(
+      i, 0, right->GetPointData()->GetTCoords()->GetComponent(i, 0) + 0.37);
+  }
+  append->AddInputData(right);
+  append->Update();
+  auto both = vtkSmartPointer<vtkPolyData>::New();
+  both->ShallowCopy(append->GetOutput());
+  double jumps[2] = { 0.0, 0.0 };
+  for (const bool blend : { false, true })
+  {
+    const auto noise = Noise(both, 0.125,
+      [blend](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetBlendSeams(blend);
+        filter->SetAntiAlias(false);
+      });
+    for (int y = 0; y < 65; ++y)
+    {
+      jumps[blend] =
+        std::max(jumps[blend], double(std::abs(noise[y * 65 + 64] - noise[65 * 65 + y * 65])));
+    }
+  }
+  EXPECT_GT(jumps[false], 1.0);
+  EXPECT_LT(jumps[true], 1e-5);
+}
+
+namespace
+{
+/// Bands of an N x N image.
+vtkSmartPointer<vtkImageData> BandsOf(
+  int N, const std::function<double(int x, int y)>& picture, int orientations, int scales)
+{
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(N, N, 1);
+  image->AllocateScalars(VTK_DOUBLE, 1);
+  for (int n = 0; n < N * N; ++n)
+  {
+    image->GetPointData()->GetScalars()->SetTuple1(n, picture(n % N, n / N));
+  }
+  vtkNew<vtkImageSubbandDecomposition> bands;
+  bands->SetInputData(image);
+  bands->SetOrientations(orientations);
+  bands->SetScales(scales);
+  bands->Update();
+  return bands->GetOutput();
+}
+} // namespace
+
+TEST(PolyDataSubbandNoise, BandsOfAnImageTakeThePlaceOfTiles)
+{
+  // At this wavelength the filter has two scales, one repeat, and a blend of two realizations.
+  auto sheet = FlatSheet(129);
+  steerable::SubbandParameters pyramid;
+  pyramid.Scales = 2;
+  pyramid.Seed = 5;
+  steerable::SubbandTiles tiles[2] = { steerable::MakeSubbandTiles(pyramid), {} };
+  pyramid.Realization = 2;
+  tiles[1] = steerable::MakeSubbandTiles(pyramid);
+  const auto blend = steerable::BlendTiles({ &tiles[0], &tiles[1] }, { 1.0, 1.0 });
+  vtkNew<vtkImageSubbandNoiseSource> source; // for names and the frequency
+  source->SetScales(2);
+  source->Update();
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->DeepCopy(source->GetOutput());
+  auto* floats = vtkFloatArray::SafeDownCast(image->GetPointData()->GetScalars());
+  ASSERT_EQ(static_cast<std::size_t>(floats->GetNumberOfValues()), blend.Values.size());
+  std::copy(blend.Values.begin(), blend.Values.end(), floats->GetPointer(0));
+  const auto own = Noise(sheet, 1.0 / 16, [](vtkPolyDataSubbandNoise* f) { f->SetSeed(5); });
+  const auto given =
+    Noise(sheet, 1.0 / 16, [&](vtkPolyDataSubbandNoise* f) { f->SetSubbandsData(image); });
+  EXPECT_LT(LargestDifference(given, own), 1e-5);
+
+  // The source itself, as floats and as bytes.
+  std::vector<float> ofSource[2];
+  for (const int type : { vtkImageSubbandNoiseSource::FLOAT, vtkImageSubbandNoiseSource::UNSIGNED_CHAR })
+  {
+    source->SetOutputType(type);
+    ofSource[type] = Noise(sheet, 1.0 / 16,
+      [&](vtkPolyDataSubbandNoise* f) { f->SetSubbandsConnection(source->GetOutputPort()); });
+  }
+  EXPECT_GT(Deviation(ofSource[0]), 0.5);
+  EXPECT_LT(LargestDifference(ofSource[0], ofSource[1]), 0.3);
+  EXPECT_GT(LargestDifference(ofSource[0], ofSource[1]), 0.0);
+
+  // Without a method it is the image itself where points lie on its pixels.
+  const int N = 64;
+  const auto picture = [](int x, int y)
+  { return 3.0 + std::sin(0.7 * x) + 0.2 * (x * y % 5) + 0.01 * y; };
+  auto bands = BandsOf(N, picture, 6, 3);
+  const auto points = Sheet(N + 1, Flat);
+  const auto plain = Noise(points, 0.1,
+    [&](vtkPolyDataSubbandNoise* filter)
+    {
+      filter->SetSubbandsData(bands);
+      filter->SetMethod(vtkPolyDataSubbandNoise::NONE);
+      filter->SetAntiAlias(false);
+    });
+  for (int n = 0; n < (N + 1) * (N + 1); ++n)
+  {
+    ASSERT_NEAR(plain[n], picture(n % (N + 1) % N, n / (N + 1) % N), 2e-5) << n;
+  }
+
+  // Weights of the user's own: one band on the left, the mean and what is coarse on the right.
+  const int components = 6 * 3 + 6 + 1;
+  vtkNew<vtkFloatArray> weights;
+  weights->SetName("weights");
+  weights->SetNumberOfComponents(components);
+  weights->SetNumberOfTuples((N + 1) * (N + 1));
+  weights->Fill(0.0);
+  for (vtkIdType n = 0; n < weights->GetNumberOfTuples(); ++n)
+  {
+    weights->SetComponent(n, n % (N + 1) < 32 ? 7 : components - 1, 2.0);
+  }
+  points->GetPointData()->AddArray(weights);
+  const auto weighted = Noise(points, 0.1,
+    [&](vtkPolyDataSubbandNoise* filter)
+    {
+      filter->SetSubbandsData(bands);
+      filter->SetMethod(vtkPolyDataSubbandNoise::NONE);
+      filter->SetAntiAlias(false);
+      filter->SetInputArrayToProcess(vtkPolyDataSubbandNoise::WEIGHTS_ARRAY, 0, 0,
+        vtkDataObject::FIELD_ASSOCIATION_POINTS, "weights");
+    });
+  for (int n = 0; n < (N + 1) * (N + 1); ++n)
+  {
+    const int x = n % (N + 1);
+    const vtkIdType pixel = n / (N + 1) % N * N + x % N;
+    ASSERT_NEAR(weighted[n],
+      2.0 * bands->GetPointData()->GetScalars()->GetComponent(pixel, x < 32 ? 7 : components - 1),
+      2e-5)
+      << n;
+  }
+}
+
+TEST(PolyDataSubbandNoise, WeightsOfAnImageAreNotHeldAtTheVarianceOfNoise)
+{
+  const int N = 64;
+  auto bands = BandsOf(N, [](int x, int y) { return std::sin(0.7 * x) + 0.2 * (x * y % 5); }, 4, 3);
+  const auto points = Sheet(N + 1, Flat);
+  const auto valuesOf = [&](bool own)
+  {
+    return Noise(points, 0.125,
+      [&, own](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->SetSubbandsData(bands);
+        // Other methods' weights are replaced.
+        filter->SetMethod(own ? vtkPolyDataSubbandNoise::LEAST_SQUARES : vtkPolyDataSubbandNoise::NONE);
+        if (own)
+        {
+          filter->SetInputArrayToProcess(vtkPolyDataSubbandNoise::WEIGHTS_ARRAY, 0, 0,
+            vtkDataObject::FIELD_ASSOCIATION_POINTS, "weights");
+        }
+      });
+  };
+  auto weights = vtkSmartPointer<vtkFloatArray>::New();
+  weights->SetName("weights");
+  weights->SetNumberOfComponents(4 * 3 + 4 + 1);
+  weights->SetNumberOfTuples((N + 1) * (N + 1));
+  weights->Fill(10.0);
+  points->GetPointData()->AddArray(weights);
+  const auto whole = valuesOf(false);
+  const auto tenfold = valuesOf(true);
+  for (std::size_t n = 0; n < whole.size(); ++n)
+  {
+    ASSERT_NEAR(tenfold[n], 10.0 * whole[n], 1e-4) << n;
+  }
+}
+
+// The paper's Fig. 8 through the filter: points of a mesh that see a zone plate under a Jacobian.
+TEST(PolyDataSubbandNoise, FiltersTheZonePlate)
+{
+  const int N = 256;
+  const auto zonePlate = [](int x, int y)
+  { return 127.5 + 127.5 * std::cos(Pi * (std::pow(x - 128, 2) + std::pow(y - 128, 2)) / 256); };
+  Eigen::Matrix2d jacobian;
+  jacobian << 2.0, 0.7, 0.0, 1.0;
+  const Eigen::Matrix2d inverse = (jacobian * jacobian.transpose()).inverse();
+  const int n = 121;
+  auto mesh = Sheet(n, [=](double u, double v) { return Eigen::Vector3d((n - 1) * u, (n - 1) * v, 0.0); });
+  vtkDataArray* texture = mesh->GetPointData()->GetTCoords();
+  for (vtkIdType i = 0; i < n * n; ++i)
+  {
+    const Eigen::Vector2d place = jacobian * Eigen::Vector2d(i % n, i / n) / N;
+    texture->SetComponent(i, 0, place[0]);
+    texture->SetComponent(i, 1, place[1]);
+  }
+  for (const auto& [K, limit] : { std::pair{ 8, 4.4 }, { 4, 8.5 } })
+  {
+    auto bands = BandsOf(N, zonePlate, K, 5);
+    double errors[2] = { 0.0, 0.0 };
+    for (const bool antiAlias : { false, true })
+    {
+      const auto values = Noise(mesh, 10.0,
+        [&, antiAlias](vtkPolyDataSubbandNoise* filter)
+        {
+          filter->SetSubbandsData(bands);
+          filter->SetMethod(vtkPolyDataSubbandNoise::NONE);
+          filter->SetAntiAlias(antiAlias);
+        });
+      // Rows at which points lie on pixels, but not at the border, where points have half a footprint.
+      int points = 0;
+      for (int y = 10; y < n - 1; y += 10)
+      {
+        for (int x = 1; x + 1 < n; ++x, ++points)
+        {
+          const int centerX = 2 * x + 7 * y / 10;
+          double sum = 0.0, total = 0.0;
+          for (int b = -8; b <= 8; ++b)
+          {
+            for (int a = -12; a <= 12; ++a)
+            {
+              const Eigen::Vector2d p(a, b);
+              const double weight = std::exp(-0.5 * p.dot(inverse * p));
+              sum += weight * zonePlate((centerX + a + N) % N, (y + b + N) % N);
+              total += weight;
+            }
+          }
+          errors[antiAlias] += std::pow(values[y * n + x] - sum / total, 2);
+        }
+      }
+      errors[antiAlias] /= points;
+    }
+    RecordProperty("ZonePlateK" + std::to_string(K), std::to_string(errors[1]));
+    EXPECT_LT(errors[1], limit) << K;
+    EXPECT_GT(errors[0], 5000.0) << "unfiltered";
+  }
+}
+
+TEST(PolyDataSubbandNoise, ImagesWithoutBandsAreRefused)
+{
+  const auto refusal = [](vtkPolyData* mesh, vtkImageData* image)
+  {
+    vtkNew<vtkPolyDataSubbandNoise> filter;
+    auto messages = Listen(filter);
+    filter->SetInputData(mesh);
+    filter->SetSubbandsData(image);
+    filter->Update();
+    EXPECT_EQ(messages->Errors, 1) << messages->Text;
+    EXPECT_EQ(vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPoints(), 0);
+    return messages->Text;
+  };
+  auto sheet = FlatSheet(17);
+  vtkNew<vtkImageData> plain;
+  plain->SetDimensions(32, 32, 1);
+  plain->AllocateScalars(VTK_FLOAT, 1);
+  EXPECT_NE(refusal(sheet, plain).find("has no bands"), std::string::npos);
+  plain->SetDimensions(64, 32, 1);
+  plain->AllocateScalars(VTK_FLOAT, 1);
+  plain->GetPointData()->GetScalars()->Fill(1.0);
+  vtkNew<vtkImageSubbandDecomposition> oblong;
+  oblong->SetInputData(plain);
+  oblong->SetScales(3);
+  oblong->Update();
+  EXPECT_NE(refusal(sheet, oblong->GetOutput()).find("64 x 32"), std::string::npos);
+  auto bands = BandsOf(32, [](int x, int y) { return double(x * y); }, 4, 2);
+  EXPECT_NE(refusal(Sheet(17, Flat, CellKind::Quads, 1.0, false), bands)
+              .find("There are no texture coordinates"),
+    std::string::npos);
+  bands->GetFieldData()->Initialize();
+  EXPECT_NE(refusal(sheet, bands).find("has no bands"), std::string::npos);
 }
 
 TEST(PolyDataSubbandNoise, Octaves)

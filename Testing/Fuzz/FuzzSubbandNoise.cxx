@@ -155,6 +155,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const char* names[] = { "None", "p", "c", "uv", "" };
   filter->SetInputArrayToProcess(0, 0, 0, bytes.Next(2), names[bytes.Next(5)]);
   auto surface = MakeSurface(bytes);
+  filter->SetBlendSeams(bytes.Next(2));
   if (bytes.Next(4) == 0)
   {
     vtkNew<vtkMultiBlockDataSet> blocks;

@@ -474,3 +474,90 @@ TEST(SubbandTiles, OctavesNeedAnOffset)
     EXPECT_NEAR(Correlation(shifted, base), 0.0, 0.03) << index;
   }
 }
+
+namespace
+{
+/// All components of an image, texel by texel.
+std::vector<float> Decompose(
+  const std::vector<double>& image, int width, int height, SubbandParameters p)
+{
+  p.TileSize = std::min(width, height);
+  const int components = ImageComponents(p);
+  const ImageSpectrum spectrum = TransformImage(image, width, height);
+  std::vector<float> values(image.size() * components);
+  for (int c = 0; c < components; c += 2)
+  {
+    WriteImageSubbands(spectrum, p, c, values.data());
+  }
+  return values;
+}
+} // namespace
+
+TEST(SubbandTiles, BandsAndResidualsOfAnImageSumToIt)
+{
+  // Odd and even sides, squares or not; edges that do not match put power at the Nyquist frequency.
+  for (const auto& [width, height] : { std::pair{ 64, 64 }, { 48, 33 }, { 21, 50 }, { 17, 17 } })
+  {
+    for (const int orientations : { 3, 8 })
+    {
+      std::vector<double> image;
+      for (int n = 0; n < width * height; ++n)
+      {
+        image.push_back(0.4 + 0.01 * (n % width) - 0.5 * (n % 7 == 3) + (n / width % 2 ? 0.2 : 0.0));
+      }
+      const SubbandParameters p = Pyramid(orientations, 2);
+      const auto values = Decompose(image, width, height, p);
+      const int components = ImageComponents(p);
+      ASSERT_EQ(components, 2 * orientations + orientations + 1);
+      for (std::size_t n = 0; n < image.size(); ++n)
+      {
+        const double sum =
+          std::accumulate(&values[n * components], &values[n * components] + components, 0.0);
+        ASSERT_NEAR(sum, image[n], 1e-6) << width << " x " << height << ": " << n;
+      }
+    }
+  }
+  EXPECT_THROW(TransformImage({ 1.0, 2.0, 3.0 }, 2, 2), std::invalid_argument);
+}
+
+TEST(SubbandTiles, AWaveFallsIntoTheBandsOfItsFrequency)
+{
+  // 72 x 48 pixels: waves of whole periods, each component the wave times the filter there.
+  const int width = 72, height = 48;
+  const SubbandParameters p = Pyramid(6, 3);
+  const int components = ImageComponents(p);
+  for (const auto& [kx, ky] :
+    { std::pair{ 9, 0 }, { 6, 5 }, { -12, 4 }, { 30, 20 }, { 2, -1 }, { 1, 0 }, { 36, 7 } })
+  {
+    const double phase = 2 * kx == width ? 0.0 : 0.7; // there a wave has cosines only
+    const auto wave = [&, kx = kx, ky = ky](int x, int y)
+    { return std::cos(2.0 * Pi * (double(kx) * x / width + double(ky) * y / height) + phase); };
+    std::vector<double> image;
+    for (int n = 0; n < width * height; ++n)
+    {
+      image.push_back(wave(n % width, n / width));
+    }
+    const auto values = Decompose(image, width, height, p);
+    // Cycles per pixel, from the formula: D_ij = G_i(theta) h(log2(f / BandCenter) + j).
+    const double fx = double(kx) / width, fy = double(ky) / height;
+    const double octaves = std::log2(std::hypot(fx, fy) / p.BandCenter);
+    double sum = 0.0;
+    for (int c = 0; c < components; ++c)
+    {
+      const int i = c % 6, j = c / 6;
+      const double nyquist = 2 * kx == width ? AngularFilter(i, 6, std::atan2(-fy, fx))
+                                             : AngularFilter(i, 6, std::atan2(fy, fx));
+      const double angular = 0.5 * (AngularFilter(i, 6, std::atan2(fy, fx)) + nyquist);
+      const double gain = j < 3 ? angular * RadialFilter(octaves + j)
+        : j == 3                ? angular * HighResidual(octaves)
+                                : LowResidual(octaves, 3);
+      sum += gain;
+      for (int n = 0; n < width * height; n += 5)
+      {
+        ASSERT_NEAR(values[std::size_t(n) * components + c], gain * image[n], 1e-6)
+          << kx << " " << ky << ": " << c;
+      }
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-12);
+  }
+}

@@ -455,6 +455,17 @@ TEST(SubbandWeights, AntialiasingKeepsAllOrNothingAtTheEnds)
         EXPECT_NEAR(beta[8 * j], std::exp(-0.5 * omega * omega), 0.08);
         EXPECT_TRUE(j == 0 || beta[8 * j] > beta[8 * (j - 1)]);
       }
+      // The high residual of an image fades first.
+      Weights high(8);
+      EXPECT_TRUE(solver.AntialiasHigh(0.0 * identity, high.data()));
+      EXPECT_LE(LargestDifference(high, Weights(8, 1.0)), 1e-4);
+      EXPECT_TRUE(solver.AntialiasHigh(identity / (256.0 * 256.0), high.data()));
+      EXPECT_LT(high[3], beta[3]);
+      EXPECT_GT(high[3], 0.0);
+      EXPECT_TRUE(solver.AntialiasHigh(identity, high.data()));
+      EXPECT_LE(LargestDifference(high, Weights(8, 0.0)), 1e-3);
+      EXPECT_FALSE(solver.AntialiasHigh(
+        std::numeric_limits<double>::quiet_NaN() * identity, high.data()));
     }
   }
 }
@@ -466,6 +477,14 @@ TEST(SubbandWeights, HeuristicAntialiasingIsTheFilterAtTheCenters)
   jacobian << 2.0, 0.7, 0.0, 1.0;
   const Eigen::Matrix2d footprint = jacobian * jacobian.transpose() / (256.0 * 256.0);
   const Weights beta = Beta(SubbandWeights(parameters), footprint);
+  Weights high(8);
+  SubbandWeights(parameters).AntialiasHigh(footprint, high.data());
+  for (int i = 0; i < 8; ++i)
+  {
+    const double theta = Pi * i / 8;
+    const Eigen::Vector2d omega = Pi / 2 * Eigen::Vector2d(std::cos(theta), std::sin(theta));
+    EXPECT_NEAR(high[i], std::exp(-0.5 * (jacobian.transpose() * omega).squaredNorm()), 1e-4);
+  }
   parameters.RadialTriple = true;
   const Weights triple = Beta(SubbandWeights(parameters), footprint);
   for (int c = 0; c < 32; ++c)

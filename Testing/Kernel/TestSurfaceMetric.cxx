@@ -176,3 +176,25 @@ TEST(SurfaceMetric, SteeredFeature)
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(SteeredFeature(2.0, Vector3d(nan, 0.0, 1.0), 4.0), IsotropicFeature(2.0));
 }
+
+TEST(SurfaceMetric, TextureBlendGivesWayAtSeamsAndWhereTheTextureIsStretched)
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double half = std::sqrt(0.5); // as much power as the projections
+  for (const double followed : { 1.5, 4.0 })
+  {
+    EXPECT_EQ(TextureBlend(1.0, followed, infinity), 1.0);
+    EXPECT_EQ(TextureBlend(followed, followed, 1.0), 1.0);
+    EXPECT_EQ(TextureBlend(1.0, followed, 0.0), 0.0);
+    EXPECT_EQ(TextureBlend(1.5 * followed, followed, infinity), 0.0);
+    EXPECT_EQ(TextureBlend(infinity, followed, infinity), 0.0);
+    EXPECT_NEAR(TextureBlend(1.0, followed, 0.5), half, 1e-12);
+    EXPECT_NEAR(TextureBlend(1.25 * followed, followed, infinity), half, 1e-12);
+    double last = 0.0;
+    for (double distance = 0.05; distance < 1.0; distance += 0.05)
+    {
+      EXPECT_GT(TextureBlend(1.0, followed, distance), last);
+      last = TextureBlend(1.0, followed, distance);
+    }
+  }
+}

@@ -16,7 +16,9 @@ for file in ("SteerableNoise.xml", "SubbandNoise.xml"):
         continue
     for proxy in tree.getroot().iter("SourceProxy"):
         LABELS.append(proxy.get("label"))
-        if proxy.get("name") != "FlowNoise":  # it has no properties, TestFirstLook.py has its test
+        # The first has no properties, the other some defaults of its own: TestFirstLook.py and
+        # TestSubbandNoise.py have their tests.
+        if proxy.get("name") not in ("FlowNoise", "SubbandTexture"):
             XML[proxy.get("class")] = proxy
 
 PROPERTY_TAGS = ("DoubleVectorProperty", "IntVectorProperty", "StringVectorProperty")

@@ -10,12 +10,16 @@ from paraview import simple
 pt.load_plugin()
 
 # One default: the proxy's and the class's, by what the pipeline passes on.
-for proxy, name in ((simple.SubbandNoise, "vtkPolyDataSubbandNoise"), (simple.SubbandNoiseTiles, "vtkImageSubbandNoiseSource")):
+for proxy, name, data in (
+    (simple.SubbandNoise, "vtkPolyDataSubbandNoise", simple.Sphere),
+    (simple.SubbandNoiseTiles, "vtkImageSubbandNoiseSource", None),
+    (simple.SubbandDecomposition, "vtkImageSubbandDecomposition", simple.Wavelet),
+):
     fresh = getattr(steerablenoise, name)()
-    instance = proxy(Input=simple.Sphere()) if "Poly" in name else proxy()
+    instance = proxy(Input=data()) if data else proxy()
     texts = {"Automatic": 0, "Least Squares": 0, "Fractal": 0, "Float": 0}
     for key in instance.ListProperties():
-        if key in ("Input", "SelectInputVectors", "WeightsArray", "FactorsArray", "WavelengthArray", "AnisotropyArray"):
+        if key in ("Input", "SelectInputScalars", "SelectInputVectors", "WeightsArray", "FactorsArray", "WavelengthArray", "AnisotropyArray"):
             continue
         value = texts.get(str(getattr(instance, key)).strip("'"), getattr(instance, key))
         expected = getattr(fresh, "Get" + key)()
@@ -112,6 +116,42 @@ pt.check(whole.PointData["Subbands"].GetNumberOfComponents() == 8, "3 x 2 bands 
 tiles = simple.SubbandNoiseTiles(TileSize=64, Scales=2, Orientations="4")
 simple.UpdatePipeline(proxy=tiles)
 pt.check(tiles.PointData["Subbands"].GetNumberOfComponents() == 8, "tiles of 4 x 2 bands")
+
+# A user's own image: its bands sum to it.
+image = simple.Wavelet(WholeExtent=[-16, 15, -16, 15, 0, 0])
+bands = simple.SubbandDecomposition(Input=image, Scales=2, Orientations="4", BandCenter=0.2)
+simple.UpdatePipeline(proxy=bands)  # the active scalars
+decomposed = pt.array(bands.GetClientSideObject().GetOutputDataObject(0), "Subbands")
+original = pt.array(image.GetClientSideObject().GetOutputDataObject(0), "RTData")
+pt.check(decomposed.shape == (1024, 4 * 2 + 4 + 1), "4 x 2 bands and five residuals")
+difference = abs(decomposed.sum(axis=1, dtype=float) - original).max() / abs(original).max()
+pt.check(difference < 1e-6, "bands sum to the image: %g" % difference)
+
+# On a plane whose points lie on its pixels it is the image itself.
+pixels = simple.Plane(XResolution=32, YResolution=32)
+texture = simple.SubbandTexture(Input=pixels, Subbands=bands, AntiAlias=0)
+pt.check(str(texture.Method).strip("'") == "None" and texture.WeightsArray[1] == "None", "all of the image by default")
+pt.check(simple.SubbandTexture(Input=pixels, Subbands=bands).AntiAlias == 1, "filtered by default")
+with pt.Messages() as messages:
+    simple.UpdatePipeline(proxy=texture)
+pt.check(messages.errors + messages.warnings == 0, "no message: " + messages.text)
+values = pt.array(texture.GetClientSideObject().GetOutputDataObject(0), "SubbandTexture").reshape(33, 33)
+difference = abs(values[:32, :32] - original.reshape(32, 32)).max() / abs(original).max()
+pt.check(difference < 1e-5, "the image on a plane: %g" % difference)
+
+# Poles of a sphere whose texture is longitude and latitude.
+for blend in (0, 1):
+    blended = simple.SubbandNoise(Input=mapped, Wavelength=0.2, AntiAlias=0, BlendSeams=blend)
+    simple.UpdatePipeline(proxy=blended)
+    data = blended.GetClientSideObject().GetOutputDataObject(0)
+    values = pt.array(data, "SubbandNoise")
+    # The texture turns back half way around: noise is its own mirror image there but for the blend.
+    places = pt.points(data)
+    order = {tuple(numpy.round(p, 5) + 0.0): i for i, p in enumerate(places)}
+    pairs = [(i, order.get(tuple(numpy.round(p * [1, -1, 1], 5) + 0.0))) for i, p in enumerate(places)]
+    pairs = numpy.array([(i, j) for i, j in pairs if j is not None and 0.03 < places[i][1] < 0.1])
+    alike = numpy.corrcoef(values[pairs[:, 0]], values[pairs[:, 1]])[0, 1]
+    pt.check(alike < 0.9 if blend else alike > 0.99, "BlendSeams %d: likeness across the mirror %g" % (blend, alike))
 
 # A saved state comes back.
 with tempfile.TemporaryDirectory() as folder:

@@ -67,6 +67,11 @@ def array(dataset, name="SteerableNoise"):
     return None
 
 
+def points(dataset):
+    """The places of the points of a dataset as numpy, n x 3."""
+    return numpy.array([dataset.GetPoint(i) for i in range(dataset.GetNumberOfPoints())])
+
+
 def pixels(path):
     """The colours of a picture, 0 to 255, one row of three for each pixel, from below."""
     reader = vtkPNGReader()

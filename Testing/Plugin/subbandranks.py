@@ -7,10 +7,12 @@ import plugintest as pt
 from paraview import simple
 from steerablenoise import vtkPolyDataSubbandNoise
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList
+from vtkmodules.util.misc import calldata_type
+from vtkmodules.vtkCommonCore import VTK_STRING, vtkIdList
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkTriangleFilter
 from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkFiltersTexture import vtkTextureMapToSphere
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
@@ -88,6 +90,11 @@ def surfaces():
     sphere.Update()
     yield "sphere", sphere.GetOutput(), pt.slabs, None
     yield "lonely", sphere.GetOutput(), all_on_first, None
+    # Mirrored half way around, and stretched at the poles.
+    mapped = vtkTextureMapToSphere()
+    mapped.SetInputConnection(sphere.GetOutputPort())
+    mapped.Update()
+    yield "seams", mapped.GetOutput(), pt.slabs, None
     if os.path.exists(os.path.join(pt.SHARED, "spot.vtp")):
         yield "spot", read("spot.vtp"), pt.slabs, None
         yield "wind", read("gfs_wind_sphere.vtp"), pt.slabs, "wind"
@@ -98,6 +105,7 @@ for name, mesh, owner, vectors in surfaces():
     algorithm = vtkPolyDataSubbandNoise()
     algorithm.SetInputData(piece(mesh, owner))
     algorithm.SetOctaves(2)
+    algorithm.SetBlendSeams(name == "seams")
     if vectors:
         algorithm.SetInputArrayToProcess(0, 0, 0, vtkDataObject.POINT, vectors)
     algorithm.Update()
@@ -116,5 +124,31 @@ if os.path.exists(os.path.join(pt.SHARED, "gfs_wind_sphere.vtp")):
     for i, leaf in enumerate(pt.leaves(noise.GetClientSideObject().GetOutputDataObject(0))):
         if leaf.GetNumberOfPoints():
             save("ghosts_%d" % i, leaf)
+
+# One rank without the vectors that the others have: it says so, and nobody waits for it for ever.
+sphere = next(surfaces())[1]
+swirl = numpy.cross([0.0, 0.0, 1.0], vtk_to_numpy(sphere.GetPoints().GetData()))
+field = numpy_to_vtk(swirl, deep=True)
+field.SetName("swirl")
+sphere.GetPointData().AddArray(field)
+part = piece(sphere, pt.slabs)
+lacks = rank == ranks - 1 and ranks > 1
+if lacks:
+    part.GetPointData().RemoveArray("swirl")
+algorithm = vtkPolyDataSubbandNoise()
+algorithm.SetInputData(part)
+algorithm.SetInputArrayToProcess(0, 0, 0, vtkDataObject.POINT, "swirl")
+errors = []
+
+
+@calldata_type(VTK_STRING)
+def note(_algorithm, _event, text):
+    errors.append(text)
+
+
+algorithm.AddObserver("ErrorEvent", note)
+algorithm.Update()
+assert len(errors) == lacks and all("There is no array 'swirl'" in text for text in errors), errors
+assert (algorithm.GetOutputDataObject(0).GetNumberOfPoints() == 0) == lacks
 
 print("rank %d of %d done" % (rank, ranks))

@@ -684,12 +684,12 @@ class NearestPoints
 {
 public:
   explicit NearestPoints(vtkDataSet* dataset)
-    : DataSet(dataset)
+    : Places(dataset)
   {
     Eigen::AlignedBox3d box;
     for (vtkIdType point = 0; point < dataset->GetNumberOfPoints(); ++point)
     {
-      const Eigen::Vector3d place = this->GetPlace(point);
+      const Eigen::Vector3d place = this->Places(point);
       if (place.allFinite())
       {
         box.extend(place);
@@ -710,7 +710,7 @@ public:
     places->SetDataTypeToDouble();
     for (const vtkIdType point : this->Points)
     {
-      places->InsertNextPoint(this->Normalize(this->GetPlace(point)).data());
+      places->InsertNextPoint(this->Normalize(this->Places(point)).data());
     }
     this->Normalized->SetPoints(places);
     this->Locator->SetDataSet(this->Normalized);
@@ -720,7 +720,7 @@ public:
   /// 0 if there is none.
   double GetDistance(vtkIdType point)
   {
-    const Eigen::Vector3d place = this->GetPlace(point);
+    const Eigen::Vector3d place = this->Places(point);
     if (!place.allFinite() || this->Points.empty())
     {
       return 0.0;
@@ -728,7 +728,7 @@ public:
     this->Locator->FindClosestNPoints(8, this->Normalize(place).data(), this->Near);
     for (const vtkIdType other : *this->Near)
     {
-      const double distance = (this->GetPlace(this->Points[other]) - place).norm();
+      const double distance = (this->Places(this->Points[other]) - place).norm();
       if (std::isfinite(distance) && distance > 0.0)
       {
         return distance;
@@ -738,19 +738,12 @@ public:
   }
 
 private:
-  Eigen::Vector3d GetPlace(vtkIdType point) const
-  {
-    Eigen::Vector3d place;
-    this->DataSet->GetPoint(point, place.data());
-    return place;
-  }
-
   Eigen::Vector3d Normalize(const Eigen::Vector3d& place) const
   {
     return (place / 2.0 - this->Origin) / this->Unit;
   }
 
-  vtkDataSet* DataSet;
+  PointPlaces Places;
   /// Those that have a place.
   std::vector<vtkIdType> Points;
   Eigen::Vector3d Origin;

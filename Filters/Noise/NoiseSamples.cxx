@@ -273,6 +273,10 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
     return nullptr;
   }
   const PointPlaces places(this->DataSet);
+  if (!this->Cells)
+  {
+    this->GetCopies(); // before the array: it takes memory for a while
+  }
   auto normals = NewOutputArray("Normals", 3, this->GetNumberOfSamples());
   // The dataset's own normals where it has them; their sense does not matter.
   vtkDataSetAttributes* attributes = this->Cells

@@ -4,7 +4,7 @@
 
 #include "LatticeHash.h"
 #include "MetricTensor.h"
-#include "SteerableNoiseStages.h"
+#include "Fast/Stages.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -24,10 +24,39 @@
 #define HWY_TARGET_INCLUDE "SteerableNoise.cxx"
 #include <hwy/foreach_target.h>
 
-#include <hwy/highway.h>
+#include "Fast/Images-inl.h"
+#include "Fast/Points-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-#include "SteerableNoiseSimd-inl.h"
+namespace steerable
+{
+namespace HWY_NAMESPACE
+{
+EvaluationCounts EvaluateImage2(const NoiseSetup& setup, const ImageGrid& grid, const Field& field,
+  std::size_t rowBegin, std::size_t rowEnd, float* noise)
+{
+  return EvaluateImage<2>(setup, grid, field, rowBegin, rowEnd, noise);
+}
+
+EvaluationCounts EvaluateImage3(const NoiseSetup& setup, const ImageGrid& grid, const Field& field,
+  std::size_t rowBegin, std::size_t rowEnd, float* noise)
+{
+  return EvaluateImage<3>(setup, grid, field, rowBegin, rowEnd, noise);
+}
+
+EvaluationCounts EvaluatePoints2(const NoiseSetup& setup, const TupleReader<double>& positions,
+  const Field& field, std::size_t begin, std::size_t end, float* noise)
+{
+  return EvaluatePoints<2>(setup, positions, field, begin, end, noise);
+}
+
+EvaluationCounts EvaluatePoints3(const NoiseSetup& setup, const TupleReader<double>& positions,
+  const Field& field, std::size_t begin, std::size_t end, float* noise)
+{
+  return EvaluatePoints<3>(setup, positions, field, begin, end, noise);
+}
+} // namespace HWY_NAMESPACE
+} // namespace steerable
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE

@@ -1,7 +1,22 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Parts of a surflet: fades, hashes, gradients (a part of SteerableNoiseSimd-inl.h, which includes it).
+/// Parts of a surflet, as Surflet.h and LatticeHash.h have them: fades and profiles, hashes, gradients.
+#if defined(STEERABLE_FAST_PROFILE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STEERABLE_FAST_PROFILE_INL_H
+#undef STEERABLE_FAST_PROFILE_INL_H
+#else
+#define STEERABLE_FAST_PROFILE_INL_H
+#endif
 
+#include "Fast/Registers-inl.h"
+#include "LatticeHash.h"
+#include "NoiseParameters.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace steerable
+{
+namespace HWY_NAMESPACE
+{
 /**
  * Kensler's quintic for t >= 0, exactly 0 from t = 1 on. With r = 1 - t it is r³ (6t² + 3t + 1), which
  * keeps its relative precision where it is small: normalisation would show what is lost there. Here r and
@@ -220,3 +235,8 @@ HWY_NOINLINE VU WrapIndex(VU index, std::int64_t period)
     i = hn::IfThenElse(below, hn::Add(i, cells), hn::IfThenElse(above, hn::Sub(i, cells), i));
   }
 }
+} // namespace HWY_NAMESPACE
+} // namespace steerable
+HWY_AFTER_NAMESPACE();
+
+#endif

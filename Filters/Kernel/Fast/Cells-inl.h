@@ -1,6 +1,33 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Quality 0 without extensions: the corners of the sample's own cell (a part of SteerableNoiseSimd-inl.h, which includes it).
+/// Quality 0 without extensions: the corners of the sample's own cell.
+#if defined(STEERABLE_FAST_CELLS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STEERABLE_FAST_CELLS_INL_H
+#undef STEERABLE_FAST_CELLS_INL_H
+#else
+#define STEERABLE_FAST_CELLS_INL_H
+#endif
+
+#include "Fast/Metrics-inl.h"
+#include "Fast/Profile-inl.h"
+#include "Fast/Sums-inl.h"
+
+#include <array>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace steerable
+{
+namespace HWY_NAMESPACE
+{
+/// Where the samples of a register are in the lattice of an octave: cells as the hash takes them, and
+/// fractions from their corners.
+template <int N>
+struct Places
+{
+  VU Cell[N];
+  V Fraction[N];
+};
 
 /// Gradients of the lattice rows on both sides of a row of pixels, hashed once and kept while they serve.
 template <int N>
@@ -195,7 +222,7 @@ HWY_INLINE V CellWindow(Fade fade, V fraction)
  * faded by the metric.
  */
 template <int N, bool Weighted, class Corners>
-WALK_INLINE V SumOverCell(
+STAGE_INLINE V SumOverCell(
   const V (&u)[N], V along, V across, const V (&f)[N], const V (&near)[N], Corners& corners)
 {
   // G = b I + (k - b) u uT
@@ -271,3 +298,56 @@ WALK_INLINE V SumOverCell(
     return hn::MulAdd(near[2], hn::Sub(lower, upper), upper);
   }
 }
+
+/**
+ * The same for Quality 0 without extensions; `getPlaces` also gives the windows of the lower corners.
+ * `direct`: where the noise goes if all is uniform, see NoiseSetup; else null.
+ */
+template <int N, class Corners, class GetPlaces>
+STAGE_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
+  std::size_t count, float* direct, Corners& corners, std::uint64_t& visited, GetPlaces&& getPlaces)
+{
+  const EigenvalueRange range = VectorEigenvalues(setup.Parameters, N);
+  const V strength = Const(static_cast<float>(setup.Parameters.Strength));
+  const V along = AtStrength(range.Along, strength);
+  const V across = AtStrength(range.Across, strength);
+  const bool weighted = setup.Parameters.AnisotropicWeight;
+  const bool metric = weighted || setup.Parameters.MetricInProjection;
+  for (std::size_t i = 0; i < count; i += Lanes)
+  {
+    Places<N> places;
+    V near[N];
+    getPlaces(i, places, near);
+    corners.SetCells(places.Cell);
+    V u[N];
+    for (int axis = 0; axis < N; ++axis)
+    {
+      u[axis] = Load(block.U[axis] + i);
+    }
+    const V one = Const(1.0f);
+    const V k = !metric ? one : direct ? along : Load(block.Along + i);
+    const V b = !metric ? one : direct ? across : Load(block.Across + i);
+    const V noise = weighted
+      ? SumOverCell<N, true>(u, k, b, places.Fraction, near, corners)
+      : SumOverCell<N, false>(u, k, b, places.Fraction, near, corners);
+    if (!direct)
+    {
+      AddOctave(setup, octave, block, i, noise);
+    }
+    else if (i + Lanes <= count)
+    {
+      hn::StoreU(noise, DF(), direct + i);
+    }
+    else
+    {
+      hn::Store(noise, DF(), block.Noise);
+      std::copy_n(block.Noise, count - i, direct + i);
+    }
+  }
+  visited += count << N;
+}
+} // namespace HWY_NAMESPACE
+} // namespace steerable
+HWY_AFTER_NAMESPACE();
+
+#endif

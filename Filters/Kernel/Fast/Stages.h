@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What the stages of the fast path hand to each other (private to SteerableNoise.cxx). The names are
+ * What the stages of the fast path hand to each other (private to the files of this folder and SteerableNoise.cxx). The names are
  * those of SteerableNoiseReference: u and m the axes of the metric, k, b and e its eigenvalues along,
  * across and on the second axis, v a corner minus the point, q its squared distance.
  */
-#ifndef SteerableNoiseStages_h
-#define SteerableNoiseStages_h
+#ifndef Fast_Stages_h
+#define Fast_Stages_h
 
 #include "MetricTensor.h"
 #include "SteerableNoise.h"

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/// How a tile sees corners, and which of its registers they reach.
+#if defined(STEERABLE_FAST_WALK_VIEW_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STEERABLE_FAST_WALK_VIEW_INL_H
+#undef STEERABLE_FAST_WALK_VIEW_INL_H
+#else
+#define STEERABLE_FAST_WALK_VIEW_INL_H
+#endif
+
+#include "Fast/Walk/Corners-inl.h"
+#include "Fast/Walk/Reach-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace steerable
+{
+namespace HWY_NAMESPACE
+{
+/// Axes across the flow: in 2D the normal (-u_y, u_x), in 3D those of space.
+template <int N>
+constexpr int AxesAcross = N == 2 ? 1 : N;
+
+/// A vector across u on these axes.
+template <int N>
+STAGE_INLINE void ToAcross(const V (&v)[N], const V (&u)[N], V (&across)[AxesAcross<N>])
+{
+  if constexpr (N == 2)
+  {
+    across[0] = hn::MulSub(u[0], v[1], hn::Mul(u[1], v[0]));
+  }
+  else
+  {
+    const V along = Dot(v, u);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      across[axis] = hn::NegMulAdd(along, u[axis], v[axis]);
+    }
+  }
+}
+
+/**
+ * Registers that share a list, as a group that changes with λ within each and with μ from one to the next;
+ * what a corner needs of it to find out which of them it reaches.
+ */
+template <int N>
+struct Span
+{
+  std::size_t Begin;
+  std::size_t End;
+  /// Across the flow.
+  V Bend[AxesAcross<N>];
+  V PlaceStep[2][AxesAcross<N>];
+  V UStep[2][AxesAcross<N>];
+  V BendStep[2][AxesAcross<N>];
+  const Group<N>& Whole;
+  const Extent& Surflet;
+
+  STAGE_INLINE Span(
+    std::size_t begin, std::size_t end, const Group<N>& group, const Extent& extent)
+    : Begin(begin)
+    , End(end)
+    , Whole(group)
+    , Surflet(extent)
+  {
+    ToAcross<N>(group.Bend, group.U, this->Bend);
+    for (int k = 0; k < 2; ++k)
+    {
+      ToAcross<N>(group.PlaceStep[k], group.U, this->PlaceStep[k]);
+      ToAcross<N>(group.UStep[k], group.U, this->UStep[k]);
+      ToAcross<N>(group.BendStep[k], group.U, this->BendStep[k]);
+    }
+  }
+
+  /// μ of a register.
+  float GetMu(std::size_t r) const
+  {
+    return this->End - this->Begin < 2 ? 0.0f
+                                       : 2.0f * static_cast<float>(r - this->Begin) /
+          static_cast<float>(this->End - this->Begin - 1) -
+        1.0f;
+  }
+};
+
+/// How a span sees corners: across the flow they are at T - λ Step[0] - μ Step[1], in reach if within Width.
+template <int N>
+struct View
+{
+  V T[AxesAcross<N>];
+  V Step[2][AxesAcross<N>];
+  V Width;
+
+  STAGE_INLINE View() {}
+
+  /// Whether there is a λ in [-1, 1] at which T is within `width` of 0.
+  static STAGE_INLINE hn::Mask<DF> IsNear(
+    const V (&t)[AxesAcross<N>], const V (&step)[AxesAcross<N>], V width)
+  {
+    if constexpr (N == 2)
+    {
+      return hn::Le(hn::Sub(hn::Abs(t[0]), hn::Abs(step[0])), width);
+    }
+    else
+    {
+      const V one = Const(1.0f);
+      const V tStep = Dot(t, step);
+      const V step2 = hn::Add(Dot(step, step), Const(1e-20f));
+      const V best = hn::Max(hn::Min(hn::Div(tStep, step2), one), hn::Neg(one));
+      const V least = hn::MulAdd(hn::MulSub(best, step2, hn::Add(tStep, tStep)), best, Dot(t, t));
+      return hn::And(
+        hn::Le(least, hn::MulAdd(width, width, Const(1e-5f))), hn::Ge(width, hn::Zero(DF())));
+    }
+  }
+};
+
+/// How a span sees corners at these indices, displaced by `jitter` and, at most, by as much as `loose`.
+template <int N, class Walk>
+STAGE_INLINE View<N> GetView(const Walk& walk, const Span<N>& span, const V (&corner)[N],
+  const V (&jitter)[N], float loose)
+{
+  const Group<N>& group = span.Whole;
+  View<N> view;
+  V v[N];
+  for (int axis = 0; axis < N; ++axis)
+  {
+    v[axis] = hn::Sub(corner[axis], group.Place[axis]);
+  }
+  if constexpr (Walk::Variant)
+  {
+    V index[N];
+    std::copy(v, v + N, index);
+    ToPlace(walk, index, v);
+    for (int axis = 0; axis < N && walk.IsJittered(); ++axis)
+    {
+      v[axis] = hn::Add(v[axis], jitter[axis]);
+    }
+  }
+  const V s = Dot(v, group.U);
+  ToAcross<N>(v, group.U, view.T);
+  const V sag = hn::Mul(hn::Mul(s, s), Const(0.5f));
+  V steps = hn::Zero(DF());
+  for (int k = 0; k < 2; ++k)
+  {
+    // v UStep is that of the part across.
+    const V sStep = hn::Sub(Dot(view.T, span.UStep[k]), group.AlongStep[k]);
+    steps = hn::Add(steps, hn::Abs(sStep));
+    for (int axis = 0; axis < AxesAcross<N>; ++axis)
+    {
+      view.Step[k][axis] = hn::MulAdd(s, span.UStep[k][axis], span.PlaceStep[k][axis]);
+      if (walk.Setup.Curved)
+      {
+        view.Step[k][axis] = hn::MulAdd(sag, span.BendStep[k][axis], view.Step[k][axis]);
+        view.Step[k][axis] = hn::MulAdd(hn::Mul(s, sStep), span.Bend[axis], view.Step[k][axis]);
+      }
+    }
+  }
+  for (int axis = 0; axis < AxesAcross<N> && walk.Setup.Curved; ++axis)
+  {
+    view.T[axis] = hn::NegMulAdd(sag, span.Bend[axis], view.T[axis]);
+  }
+  const V distance = hn::Abs(s);
+  const V shortest = hn::Sub(
+    distance, hn::Add(hn::Add(steps, group.AlongRest), Const(span.Surflet.Travel + loose)));
+  view.Width = hn::Add(group.GetRest(hn::Add(distance, Const(loose)), steps),
+    GetTaper(shortest, Const(1.0f / span.Surflet.HalfLength), Const(span.Surflet.HalfWidth),
+      span.Surflet.Tapers));
+  return view;
+}
+
+/// For each register of the span bits of the corners on the list that reach its samples.
+template <int N, class Walk>
+STAGE_INLINE void SetReaching(const Walk& walk, const Span<N>& span, const CornerList<N>& list,
+  std::uint64_t (&reaching)[TileRegisters])
+{
+  const bool all = !walk.Params.AnisotropicWeight;
+  std::fill_n(reaching, TileRegisters, 0);
+  for (std::size_t i = 0; i < list.Count; i += Lanes)
+  {
+    const auto listed = hn::FirstN(DF(), list.Count - i);
+    V offset[N];
+    V jitter[N];
+    LoadAll(list.Offset, i, offset);
+    LoadAll(list.Jitter, i, jitter);
+    const View<N> view = GetView(walk, span, offset, jitter, 0.0f);
+    for (std::size_t r = span.Begin; r < span.End; ++r)
+    {
+      const V mu = Const(span.GetMu(r));
+      V t[AxesAcross<N>];
+      for (int axis = 0; axis < AxesAcross<N>; ++axis)
+      {
+        t[axis] = hn::NegMulAdd(mu, view.Step[1][axis], view.T[axis]);
+      }
+      const auto near = View<N>::IsNear(t, view.Step[0], view.Width);
+      reaching[r] |= ToBits(all ? listed : hn::And(listed, near)) << i;
+    }
+  }
+}
+
+/// Takes corners off the list that reach no sample of the span, from where that was done before on.
+template <int N, class Walk>
+HWY_NOINLINE void Sift(
+  const Walk& walk, const Span<N>& span, const Reach<N>& reach, CornerList<N>& list)
+{
+  if (!walk.Params.AnisotropicWeight)
+  {
+    return;
+  }
+  // Jitter is not known yet.
+  const V looseness = GetLooseness(walk, reach);
+  V middle[N];
+  std::fill_n(middle, N, Const(walk.Setup.JitterMiddle));
+  std::size_t kept = list.Sifted;
+  for (std::size_t i = list.Sifted; i < list.Count; i += Lanes)
+  {
+    V offset[N];
+    for (int axis = 0; axis < N; ++axis)
+    {
+      offset[axis] = hn::ConvertTo(DF(), hn::LoadU(DI(), list.Index[axis] + i));
+    }
+    const View<N> view = GetView(walk, span, offset, middle, walk.Setup.JitterRadius);
+    const V width =
+      hn::Add(hn::Add(view.Width, looseness), hn::Sqrt(Dot(view.Step[1], view.Step[1])));
+    const auto listed = hn::FirstN(DF(), list.Count - i);
+    std::uint64_t bits = ToBits(hn::And(listed, View<N>::IsNear(view.T, view.Step[0], width)));
+    for (; bits != 0; bits &= bits - 1, ++kept)
+    {
+      const std::size_t from = i + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
+      for (auto& index : list.Index)
+      {
+        index[kept] = index[from];
+      }
+    }
+  }
+  list.Count = list.Sifted = kept;
+}
+} // namespace HWY_NAMESPACE
+} // namespace steerable
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * A checksum of the kernel's noise for many options, on images and points in 2D and 3D, at one SIMD
- * level: noiseBits LEVEL. A change that is not to change results prints the same lines before and after.
+ * level: noiseBits LEVEL [FILE]. A change that is not to change results prints the same lines before and after. FILE gets
+ * the values themselves, to see how far they are apart.
  */
 #include "KernelTestHelpers.h"
 
@@ -61,9 +62,15 @@ std::vector<Case> AllCases()
   return cases;
 }
 
+std::FILE* Values = nullptr;
+
 /// FNV-1a of the bits.
 std::uint64_t Checksum(const std::vector<float>& noise)
 {
+  if (Values)
+  {
+    std::fwrite(noise.data(), sizeof(float), noise.size(), Values);
+  }
   std::uint64_t sum = 14695981039346656037u;
   for (float value : noise)
   {
@@ -124,11 +131,12 @@ void Print(const Case& named)
 
 int main(int argc, char** argv)
 {
-  if (argc != 2)
+  if (argc < 2)
   {
-    std::fprintf(stderr, "usage: noiseBits LEVEL\n");
+    std::fprintf(stderr, "usage: noiseBits LEVEL [FILE]\n");
     return 2;
   }
+  Values = argc > 2 ? std::fopen(argv[2], "wb") : nullptr;
   for (std::int64_t target : SimdLevels())
   {
     if (std::strcmp(hwy::TargetName(target), argv[1]) == 0)
@@ -139,7 +147,7 @@ int main(int argc, char** argv)
         Print<2>(named);
         Print<3>(named);
       }
-      return 0;
+      return Values && std::fclose(Values) != 0;
     }
   }
   std::fprintf(stderr, "This machine or this build lacks the level %s.\n", argv[1]);

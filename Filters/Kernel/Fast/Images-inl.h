@@ -81,19 +81,103 @@ struct ImageOctave
   }
 };
 
+/// Rows of samples in a register of an image.
+constexpr std::size_t LaneRows = Lanes >= 4 ? 2 : 1;
+constexpr std::size_t LaneColumns = Lanes / LaneRows;
+
+/// Rows of the patch that registers take, whole registers of them.
+inline std::size_t RowsOfRegisters(std::size_t rows)
+{
+  return (rows + LaneRows - 1) / LaneRows * LaneRows;
+}
+
+/**
+ * Exchanges halves of registers between the two rows of each pair, so that each holds samples of both: the
+ * first LaneColumns of either, then the next. Where there is no second row the first stands for it. Twice
+ * done, all is as it was.
+ */
+HWY_NOINLINE void PairRows(float* array, std::size_t rows, std::size_t columns)
+{
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (LaneRows == 2)
+  {
+    for (std::size_t r = 0; r < rows; r += 2)
+    {
+      float* const first = array + r * PatchStride;
+      float* const second = first + PatchStride;
+      const float* const other = r + 1 < rows ? second : first;
+      for (std::size_t i = 0; i < columns; i += Lanes)
+      {
+        const V a = hn::LoadU(DF(), first + i);
+        const V b = hn::LoadU(DF(), other + i);
+        hn::StoreU(hn::ConcatLowerLower(DF(), b, a), DF(), first + i);
+        hn::StoreU(hn::ConcatUpperUpper(DF(), b, a), DF(), second + i);
+      }
+    }
+  }
+#else
+  (void)array;
+  (void)rows;
+  (void)columns;
+#endif
+}
+
+HWY_INLINE void PairRows(std::uint32_t* array, std::size_t rows, std::size_t columns)
+{
+  PairRows(reinterpret_cast<float*>(array), rows, columns);
+}
+
+/// What walks read of the metrics of a patch.
+template <int N>
+void PairMetrics(const NoiseSetup& setup, std::size_t rows, std::size_t columns, MetricBlock& block)
+{
+  for (int axis = 0; axis < N; ++axis)
+  {
+    PairRows(block.U[axis], rows, columns);
+    if (setup.Curved)
+    {
+      PairRows(block.Bend[axis], rows, columns);
+    }
+    if (setup.Biaxial)
+    {
+      PairRows(block.M[axis], rows, columns);
+    }
+  }
+  if (N == 2 || setup.Biaxial)
+  {
+    PairRows(block.URest[0], rows, columns);
+    PairRows(block.URest[1], rows, columns);
+  }
+  if (setup.Biaxial)
+  {
+    PairRows(block.Second, rows, columns);
+  }
+  for (float* array : { block.Along, block.Across, block.Sense })
+  {
+    PairRows(array, rows, columns);
+  }
+}
+
 /// One octave of a patch of an image, whose places are known.
-template <int N, bool Variant>
+template <int N, WalkKind Kind>
 HWY_NOINLINE void WalkPatch(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
   std::size_t rows, std::size_t columns, std::uint64_t& visited)
 {
-  Walk<N, Variant, !Variant> walk(setup, octave, block);
+  Walk<N, Kind> walk(setup, octave, block);
+  Tile tile(RowsOfRegisters(rows) / LaneRows, LaneColumns);
   for (std::size_t i = 0; i < columns; i += Lanes)
   {
-    for (std::size_t r = 0; r < rows; ++r)
+    tile.Registers = 0;
+    for (std::size_t half = 0; half < LaneRows && i + half * LaneColumns < columns; ++half)
     {
-      walk.SetRegister(r, r * PatchStride + i, std::min(Lanes, columns - i));
+      for (std::size_t row = 0; row < rows; row += LaneRows)
+      {
+        const std::size_t column = half * LaneColumns;
+        tile.SetRegister(tile.Registers++, (row + half) * PatchStride + i, column, row,
+          std::min(LaneColumns, columns - i - column), std::min(LaneRows, rows - row));
+      }
     }
-    AddTile(setup, octave, block, walk, rows, visited);
+    AddTile(setup, octave, block, walk, tile, visited);
   }
 }
 
@@ -134,6 +218,11 @@ void LocatePatch(const NoiseSetup& setup, const ImageGrid& grid, const OctaveSet
         WrapToPeriod(static_cast<std::int64_t>(cell), octave.Period[axis]));
       std::fill_n(block.Fraction[axis] + at, room, static_cast<float>(y - cell));
     }
+  }
+  for (int axis = 0; axis < N; ++axis)
+  {
+    PairRows(block.Cell[axis], patch.Rows, patch.Columns);
+    PairRows(block.Fraction[axis], patch.Rows, patch.Columns);
   }
 }
 
@@ -236,12 +325,16 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
         const bool all =
           Metrics<N>(setup, field, firstOf(r), at, patch.Columns, *block, counts.Bounded);
         uniform = all && uniform;
-        if (setup.Octaves.size() > 1)
-        {
-          std::fill_n(block->Noise + at, patch.Columns + Lanes, 0.0f);
-        }
+      }
+      for (std::size_t r = 0; r < RowsOfRegisters(patch.Rows) && octaves.size() > 1; ++r)
+      {
+        std::fill_n(block->Noise + Patch::At(r), patch.Columns + Lanes, 0.0f);
       }
       float* const direct = uniform ? noise + firstOf(0) : nullptr;
+      if (!setup.SingleCell)
+      {
+        PairMetrics<N>(setup, patch.Rows, patch.Columns, *block);
+      }
       for (std::size_t o = 0; o < octaves.size(); ++o)
       {
         const OctaveSetup& octave = setup.Octaves[o];
@@ -252,12 +345,18 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
           continue;
         }
         LocatePatch<N>(setup, grid, octave, octaves[o], patch, *block);
-        for (std::size_t r = 0; r < patch.Rows && setup.Curved; ++r)
+        for (std::size_t r = 0; r < RowsOfRegisters(patch.Rows) && setup.Curved; ++r)
         {
           BendMetrics<N>(setup, octave, Patch::At(r), patch.Columns, *block);
         }
-        const auto walk = setup.Variant ? &WalkPatch<N, true> : &WalkPatch<N, false>;
+        const auto walk = ChooseWalk(setup, &WalkPatch<N, WalkKind::Plain>,
+          &WalkPatch<N, WalkKind::Windowed>, &WalkPatch<N, WalkKind::Variant>);
         walk(setup, octave, *block, patch.Rows, patch.Columns, counts.VisitedCorners);
+      }
+      if (!setup.SingleCell)
+      {
+        PairRows(block->Noise, RowsOfRegisters(patch.Rows), patch.Columns);
+        PairRows(block->Sense, RowsOfRegisters(patch.Rows), patch.Columns);
       }
       for (std::size_t r = 0; r < patch.Rows && !uniform; ++r)
       {

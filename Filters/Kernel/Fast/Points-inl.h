@@ -81,34 +81,43 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
   }
 }
 
-/// One tile of an octave; its registers are set.
+/// One tile of an octave.
 template <class Walk>
 STAGE_INLINE void AddTile(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
-  Walk& walk, std::size_t registers, std::uint64_t& visited)
+  Walk& walk, const Tile& tile, std::uint64_t& visited)
 {
-  visited += walk.Evaluate(registers);
-  for (std::size_t r = 0; r < registers; ++r)
+  visited += walk.Evaluate(tile);
+  for (std::size_t r = 0; r < tile.Registers; ++r)
   {
-    AddOctave(setup, octave, block, walk.GetFirst(r), walk.GetNoise(r));
+    AddOctave(setup, octave, block, tile.First[r], walk.GetNoise(r));
   }
 }
 
 /// One octave of the samples at the beginning of a block, whose places are known.
-template <int N, bool Variant>
+template <int N, WalkKind Kind>
 HWY_NOINLINE void WalkPoints(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
   std::size_t count, std::uint64_t& visited)
 {
-  Walk<N, Variant, false> walk(setup, octave, block);
-  std::size_t registers = 0;
+  Walk<N, Kind> walk(setup, octave, block);
+  Tile tile(TileRegisters, Lanes);
   for (std::size_t i = 0; i < count; i += Lanes)
   {
-    walk.SetRegister(registers++, i, std::min(Lanes, count - i));
-    if (registers == TileRegisters || i + Lanes >= count)
+    const std::size_t r = tile.Registers++;
+    tile.SetRegister(r, i, 0, r, std::min(Lanes, count - i), 1);
+    if (tile.Registers == TileRegisters || i + Lanes >= count)
     {
-      AddTile(setup, octave, block, walk, registers, visited);
-      registers = 0;
+      AddTile(setup, octave, block, walk, tile, visited);
+      tile.Registers = 0;
     }
   }
+}
+
+/// Calls `plain`, `windowed` or `variant`, as these parameters need it.
+template <class Function>
+Function* ChooseWalk(
+  const NoiseSetup& setup, Function* plain, Function* windowed, Function* variant)
+{
+  return setup.Variant ? variant : setup.Parameters.LatticeWindow ? windowed : plain;
 }
 
 /// Adds one octave to samples at these positions.
@@ -139,14 +148,9 @@ void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double*
   {
     BendMetrics<N>(setup, octave, 0, count, block);
   }
-  if (setup.Variant)
-  {
-    WalkPoints<N, true>(setup, octave, block, count, visited);
-  }
-  else
-  {
-    WalkPoints<N, false>(setup, octave, block, count, visited);
-  }
+  const auto walk = ChooseWalk(setup, &WalkPoints<N, WalkKind::Plain>,
+    &WalkPoints<N, WalkKind::Windowed>, &WalkPoints<N, WalkKind::Variant>);
+  walk(setup, octave, block, count, visited);
 }
 
 /// Masks, counts and hands out the noise of samples [at, at + count) of a block.

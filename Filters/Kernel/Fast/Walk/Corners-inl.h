@@ -33,9 +33,6 @@ struct CornerList
   HWY_ALIGN float Jitter[N][ListSize];
   HWY_ALIGN float Travel[ListSize];
   HWY_ALIGN float Amplitude[ListSize];
-  /// Of the axes that all samples of a register of an image share: window, and distances (3D).
-  HWY_ALIGN float RowWindow[ListSize];
-  HWY_ALIGN float FromRow[N][ListSize];
 };
 
 /// The same of a corner for the lanes of a register.
@@ -47,22 +44,18 @@ struct Corner
   V Jitter[N];
   V Travel;
   V Amplitude;
-  V RowWindow;
-  V FromRow[N];
 
   STAGE_INLINE Corner() {}
   /// One corner of a list for all lanes.
   STAGE_INLINE Corner(const CornerList<N>& list, std::size_t i)
     : Travel(Const(list.Travel[i]))
     , Amplitude(Const(list.Amplitude[i]))
-    , RowWindow(Const(list.RowWindow[i]))
   {
     for (int axis = 0; axis < N; ++axis)
     {
       this->Offset[axis] = Const(list.Offset[axis][i]);
       this->Gradient[axis] = Const(list.Gradient[axis][i]);
       this->Jitter[axis] = Const(list.Jitter[axis][i]);
-      this->FromRow[axis] = Const(list.FromRow[axis][i]);
     }
   }
 };

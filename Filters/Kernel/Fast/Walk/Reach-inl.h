@@ -71,12 +71,12 @@ struct Reach
     std::copy(group.Place, group.Place + N, this->Place);
     std::copy(group.U, group.U + N, this->U);
     std::copy(group.Bend, group.Bend + N, this->Bend);
-    this->SetAcross(group, extent, hn::Zero(DF()));
-    const Reach<N> stepped(*this);
     this->SetAcross(group, extent, row);
-    if (hn::GetLane(hn::Sub(stepped.LargestWidth, this->LargestWidth)) < 0.0f)
+    const V continued = this->LargestWidth;
+    this->SetAcross(group, extent, hn::Zero(DF()));
+    if (hn::GetLane(hn::Sub(this->LargestWidth, continued)) >= 0.0f)
     {
-      *this = stepped;
+      this->SetAcross(group, extent, row);
     }
   }
 

@@ -25,13 +25,71 @@ struct Extent
   bool Tapers;
 };
 
-/// The registers of samples that are evaluated together.
+/**
+ * The registers of samples that are evaluated together. A register is a rectangle of samples: in images of
+ * LaneRows rows, of points all in a row. Columns and rows count within the tile.
+ */
 struct Tile
 {
   std::size_t Registers = 0;
-  /// Where each begins in the block, and how many of its lanes count.
+  /// Registers come column by column, this many in each.
+  std::size_t PerColumn;
+  /// Columns of a register, and where its lanes are.
+  std::size_t LaneColumns;
+  HWY_ALIGN float LaneColumn[Lanes];
+  HWY_ALIGN float LaneRow[Lanes];
+  /// Where each begins in the block, where its first sample is, and how many of its columns and rows count;
+  /// lanes behind those repeat the last one.
   std::size_t First[TileRegisters];
-  std::size_t Count[TileRegisters];
+  float Column[TileRegisters];
+  float Row[TileRegisters];
+  float Columns[TileRegisters];
+  float Rows[TileRegisters];
+
+  Tile(std::size_t perColumn, std::size_t laneColumns)
+    : PerColumn(perColumn)
+    , LaneColumns(laneColumns)
+  {
+    for (std::size_t lane = 0; lane < Lanes; ++lane)
+    {
+      this->LaneColumn[lane] = static_cast<float>(lane % laneColumns);
+      this->LaneRow[lane] = static_cast<float>(lane / laneColumns);
+    }
+  }
+
+  void SetRegister(std::size_t r, std::size_t first, std::size_t column, std::size_t row,
+    std::size_t columns, std::size_t rows)
+  {
+    this->First[r] = first;
+    this->Column[r] = static_cast<float>(column);
+    this->Row[r] = static_cast<float>(row);
+    this->Columns[r] = static_cast<float>(columns);
+    this->Rows[r] = static_cast<float>(rows);
+  }
+  std::size_t GetCount(std::size_t r) const
+  {
+    return static_cast<std::size_t>(static_cast<int>(this->Columns[r] * this->Rows[r]));
+  }
+};
+
+/// Where columns, or rows, are from -1 at the first to 1 at the last.
+struct Ruler
+{
+  float Step;
+  float First;
+
+  Ruler(float first, float last)
+    : Step(last > first ? 2.0f / (last - first) : 0.0f)
+    , First(last > first ? -1.0f - first * this->Step : 0.0f)
+  {
+  }
+  float At(float index) const { return this->First + index * this->Step; }
+  /// Of the lanes of a register; those from `count` on repeat the one before.
+  STAGE_INLINE V At(const float* lanes, float count, float first) const
+  {
+    const V inside = hn::Min(hn::Load(DF(), lanes), Const(count - 1.0f));
+    return hn::MulAdd(inside, Const(this->Step), Const(this->At(first)));
+  }
 };
 
 /**
@@ -126,120 +184,6 @@ private:
   static STAGE_INLINE V Length(const V (&v)[N]) { return hn::Sqrt(Dot(v, v)); }
 };
 
-/**
- * The registers of a tile, in arrays over registers: each changes almost linearly from its first sample to
- * its last, from Place - PlaceStep to Place + PlaceStep, and so on, up to the rests.
- */
-template <int N>
-struct Lines
-{
-  static constexpr std::size_t Room = TileRegisters > Lanes ? TileRegisters : Lanes;
-  /// The first sample's; places are counted from there.
-  HWY_ALIGN std::uint32_t Cell[N][Room];
-  HWY_ALIGN float Place[N][Room];
-  HWY_ALIGN float PlaceStep[N][Room];
-  HWY_ALIGN float U[N][Room];
-  HWY_ALIGN float UStep[N][Room];
-  HWY_ALIGN float Bend[N][Room];
-  HWY_ALIGN float BendStep[N][Room];
-  HWY_ALIGN float PlaceRest[Room];
-  HWY_ALIGN float DirectionRest[Room];
-  HWY_ALIGN float BendRest[Room];
-};
-
-/// Middle and half of the way from `first` to `last`; adds the squares of what `values` are off it.
-template <class Walk>
-STAGE_INLINE V AddRest(const Walk& walk,
-  V rest2, V values, float first, float last, float& middle, float& step)
-{
-  middle = 0.5f * (first + last);
-  step = 0.5f * (last - first);
-  const V linear = hn::MulAdd(walk.LaneStep, Const(last - first), Const(first));
-  const V rest = hn::Sub(values, linear);
-  return hn::MulAdd(rest, rest, rest2);
-}
-
-/// The tile's registers as lines, and the largest surflet of their samples.
-template <int N, class Walk>
-HWY_NOINLINE void SetLines(const Walk& walk, const Tile& tile, Lines<N>& lines, Extent& extent)
-{
-  const std::size_t registers = tile.Registers;
-  V along = Load(walk.Along + tile.First[0]);
-  V across = walk.GetLeastAcross(tile.First[0]);
-  float before[N] = {};
-  for (std::size_t r = 0; r < registers; ++r)
-  {
-    const std::size_t first = tile.First[r];
-    const std::size_t last = first + Lanes - 1;
-    along = hn::Min(along, Load(walk.Along + first));
-    across = hn::Min(across, walk.GetLeastAcross(first));
-    // u and -u are the same axis: all on one side of the first, and that on the side of the line before.
-    float side = 0.0f;
-    float lastSide = 0.0f;
-    for (int axis = 0; axis < N; ++axis)
-    {
-      const float* u = walk.Block.U[axis];
-      side += u[first] * before[axis];
-      lastSide += u[last] * u[first];
-    }
-    side = std::copysign(1.0f, side);
-    V cosine = hn::Zero(DF());
-    for (int axis = 0; axis < N; ++axis)
-    {
-      const float* u = walk.Block.U[axis];
-      before[axis] = side * u[first];
-      cosine = hn::MulAdd(Load(u + first), Const(before[axis]), cosine);
-    }
-    const V sign = hn::And(cosine, hn::BitCast(DF(), hn::Set(DU(), 0x80000000u)));
-    const float lastSign = side * std::copysign(1.0f, lastSide);
-    V place2 = hn::Zero(DF());
-    V direction2 = hn::Zero(DF());
-    V bend2 = hn::Zero(DF());
-    for (int axis = 0; axis < N; ++axis)
-    {
-      const float* u = walk.Block.U[axis];
-      direction2 = AddRest(walk, direction2, hn::Xor(Load(u + first), sign), before[axis],
-        lastSign * u[last], lines.U[axis][r], lines.UStep[axis][r]);
-      if (walk.Setup.Curved)
-      {
-        const float* bend = walk.Block.ClampedBend[axis];
-        bend2 = AddRest(walk, bend2, Load(bend + first), bend[first], bend[last],
-          lines.Bend[axis][r], lines.BendStep[axis][r]);
-      }
-      const std::uint32_t* cell = walk.Block.Cell[axis];
-      const float* fraction = walk.Block.Fraction[axis];
-      lines.Cell[axis][r] = cell[first];
-      lines.Place[axis][r] = fraction[first];
-      lines.PlaceStep[axis][r] = 0.0f;
-      if (!Walk::Aligned || axis == 0)
-      {
-        const VU cells = hn::Sub(hn::LoadU(DU(), cell + first), hn::Set(DU(), cell[first]));
-        const V places =
-          hn::Add(hn::ConvertTo(DF(), hn::BitCast(DI(), cells)), Load(fraction + first));
-        const auto lastCells = static_cast<std::int32_t>(cell[last] - cell[first]);
-        place2 = AddRest(walk, place2, places, fraction[first],
-          static_cast<float>(lastCells) + fraction[last], lines.Place[axis][r],
-          lines.PlaceStep[axis][r]);
-      }
-    }
-    // At first the squares.
-    lines.PlaceRest[r] = GreatestLane(place2);
-    lines.DirectionRest[r] = GreatestLane(direction2);
-    lines.BendRest[r] = walk.Setup.Curved ? GreatestLane(bend2) : 0.0f;
-  }
-  extent.HalfLength = walk.GetLengthSupport() / std::sqrt(LeastLane(along)) + Slack;
-  extent.HalfWidth = walk.GetWidthSupport() / std::sqrt(LeastLane(across)) + Slack;
-  extent.Travel = walk.GetTravel() / std::sqrt(LeastLane(along));
-  extent.Tapers = !walk.IsStreaks();
-  for (float* rest : { lines.PlaceRest, lines.DirectionRest, lines.BendRest })
-  {
-    for (std::size_t r = 0; r < registers; r += Lanes)
-    {
-      hn::Store(hn::Sqrt(hn::Load(DF(), rest + r)), DF(), rest + r);
-    }
-  }
-}
-
 /// Leaves of v what is across u; returns the rest.
 template <int N>
 STAGE_INLINE V TakeAlong(V (&v)[N], const V (&u)[N])
@@ -271,89 +215,161 @@ STAGE_INLINE void SetAcrossFlow(Group<N>& group)
   }
 }
 
-/**
- * Splits vectors of the lines [begin, end), `value(axis, i)` their middles and `steps` what changes
- * within them, into the linear change within a line and from line to line. Returns the most that they,
- * with their own rests, are off that.
- */
-template <int N, class Value>
-STAGE_INLINE V SplitSpan(std::size_t begin, std::size_t end, Value&& value,
-  const float (&steps)[N][Lines<N>::Room], const float* rests, V (&middle)[N],
-  V (&change)[2][N])
+/// The samples at the corners of a span of registers, and those of the whole span on its rulers.
+struct SpanCorners
 {
-  const V half = Const(0.5f);
+  /// In the block: first and last column of the first row, the same of the last row, and one in the middle.
+  std::size_t At[4];
+  std::size_t Middle;
+  Ruler Lambda;
+  Ruler Mu;
+
+  STAGE_INLINE SpanCorners(const Tile& tile, std::size_t begin, std::size_t end)
+    : Lambda(tile.Column[begin], tile.Column[end - 1] + tile.Columns[end - 1] - 1.0f)
+    , Mu(tile.Row[begin], tile.Row[end - 1] + tile.Rows[end - 1] - 1.0f)
+  {
+    const bool columns = end - begin > tile.PerColumn;
+    const std::size_t right = columns ? end - tile.PerColumn : begin;
+    const std::size_t below = columns ? begin + tile.PerColumn - 1 : end - 1;
+    const auto columnsOf = [&tile](std::size_t r) { return static_cast<int>(tile.Columns[r]) - 1; };
+    const auto rowsOf = [&tile](std::size_t r)
+    { return (static_cast<int>(tile.Rows[r]) - 1) * static_cast<int>(tile.LaneColumns); };
+    this->At[0] = tile.First[begin];
+    this->At[1] = tile.First[right] + columnsOf(right);
+    this->At[2] = tile.First[below] + rowsOf(below);
+    this->At[3] = tile.First[end - 1] + rowsOf(end - 1) + columnsOf(end - 1);
+    this->Middle = tile.First[(begin + end) / 2];
+  }
+};
+
+/// A vector that changes linearly over a span: as it is at the corners, `at(axis, corner)`.
+template <int N, class At>
+STAGE_INLINE void SetPlane(At&& at, V (&middle)[N], V (&step)[2][N])
+{
   for (int axis = 0; axis < N; ++axis)
   {
-    const V first = Const(value(axis, begin));
-    const V last = Const(value(axis, end - 1));
-    middle[axis] = hn::Mul(half, hn::Add(first, last));
-    change[0][axis] = Const(0.5f * (steps[axis][begin] + steps[axis][end - 1]));
-    change[1][axis] = hn::Mul(half, hn::Sub(last, first));
+    const float a = at(axis, 0);
+    const float b = at(axis, 1);
+    const float c = at(axis, 2);
+    const float d = at(axis, 3);
+    middle[axis] = Const(0.25f * ((a + b) + (c + d)));
+    step[0][axis] = Const(0.25f * ((b - a) + (d - c)));
+    step[1][axis] = Const(0.25f * ((c - a) + (d - b)));
   }
-  const float lambdaStep = 2.0f / std::max<float>(1.0f, end - begin - 1.0f);
-  V most = hn::Zero(DF());
-  for (std::size_t i = 0; i < end; i += Lanes)
-  {
-    const V r = Ramp(static_cast<float>(i) - static_cast<float>(begin));
-    const V lambda = hn::MulSub(r, Const(lambdaStep), Const(end - begin > 1 ? 1.0f : 0.0f));
-    V rest2 = hn::Zero(DF());
-    V step2 = hn::Zero(DF());
-    for (int axis = 0; axis < N; ++axis)
-    {
-      HWY_ALIGN float values[Lanes];
-      for (std::size_t lane = 0; lane < Lanes; ++lane)
-      {
-        values[lane] = value(axis, i + lane);
-      }
-      const V linear = hn::MulAdd(lambda, change[1][axis], middle[axis]);
-      const V rest = hn::Sub(hn::Load(DF(), values), linear);
-      rest2 = hn::MulAdd(rest, rest, rest2);
-      const V step = hn::Sub(hn::Load(DF(), steps[axis] + i), change[0][axis]);
-      step2 = hn::MulAdd(step, step, step2);
-    }
-    const auto used =
-      hn::And(hn::Ge(r, hn::Zero(DF())), hn::Lt(r, Const(static_cast<float>(end - begin))));
-    const V rest = hn::Add(hn::Load(DF(), rests + i), hn::Add(hn::Sqrt(rest2), hn::Sqrt(step2)));
-    most = hn::Max(most, hn::IfThenElseZero(used, rest));
-  }
-  return hn::MaxOfLanes(DF(), most);
 }
 
-/// The registers [begin, end) as a group, whose places count from its first cell, `origin`.
-template <int N, class Walk>
-STAGE_INLINE Group<N> GetGroup(const Walk& walk, const Lines<N>& lines, const Extent& extent,
-  std::size_t begin, std::size_t end, VU (&origin)[N])
+/// The square of what values are off the plane.
+template <int N>
+STAGE_INLINE V GetRest2(
+  const V (&values)[N], const V (&middle)[N], const V (&step)[2][N], V lambda, V mu)
 {
-  Group<N> group;
+  V rest2 = hn::Zero(DF());
   for (int axis = 0; axis < N; ++axis)
   {
-    origin[axis] = hn::Set(DU(), lines.Cell[axis][begin]);
+    const V rest = hn::Sub(values[axis],
+      hn::MulAdd(lambda, step[0][axis], hn::MulAdd(mu, step[1][axis], middle[axis])));
+    rest2 = hn::MulAdd(rest, rest, rest2);
   }
-  group.PlaceRest = SplitSpan<N>(
-    begin, end,
-    [&](int axis, std::size_t r) HWY_ATTR
+  return rest2;
+}
+
+/**
+ * The registers [begin, end) as a group, whose places count from its first cell, `origin`, and the largest
+ * surflet of their samples. FinishGroup sets the rest.
+ */
+template <int N, class Walk>
+STAGE_INLINE void FitGroup(const Walk& walk, const Tile& tile, const SpanCorners& corners,
+  std::size_t begin, std::size_t end, VU (&origin)[N], Group<N>& group, Extent& extent)
+{
+  const MetricBlock& block = walk.Block;
+  std::uint32_t first[N];
+  // u and -u are the same axis: all on the side of the middle one.
+  V side[N];
+  float sides[4] = {};
+  for (int axis = 0; axis < N; ++axis)
+  {
+    first[axis] = block.Cell[axis][corners.At[0]];
+    origin[axis] = hn::Set(DU(), first[axis]);
+    const float middle = block.U[axis][corners.Middle];
+    side[axis] = Const(middle);
+    for (int corner = 0; corner < 4; ++corner)
     {
-      const auto cells = static_cast<std::int32_t>(lines.Cell[axis][r] - lines.Cell[axis][begin]);
-      return lines.Place[axis][r] + static_cast<float>(cells);
+      sides[corner] += middle * block.U[axis][corners.At[corner]];
+    }
+    group.Bend[axis] = group.BendStep[0][axis] = group.BendStep[1][axis] = hn::Zero(DF());
+  }
+  SetPlane<N>(
+    [&](int axis, int corner)
+    {
+      const std::size_t i = corners.At[corner];
+      return static_cast<float>(static_cast<std::int32_t>(block.Cell[axis][i] - first[axis])) +
+        block.Fraction[axis][i];
     },
-    lines.PlaceStep, lines.PlaceRest, group.Place, group.PlaceStep);
-  group.DirectionRest = SplitSpan<N>(
-    begin, end, [&](int axis, std::size_t r) HWY_ATTR { return lines.U[axis][r]; }, lines.UStep,
-    lines.DirectionRest, group.U, group.UStep);
+    group.Place, group.PlaceStep);
+  SetPlane<N>(
+    [&](int axis, int corner)
+    { return std::copysign(1.0f, sides[corner]) * block.U[axis][corners.At[corner]]; },
+    group.U, group.UStep);
   if (walk.Setup.Curved)
   {
-    group.BendRest = SplitSpan<N>(
-      begin, end, [&](int axis, std::size_t r) HWY_ATTR { return lines.Bend[axis][r]; },
-      lines.BendStep, lines.BendRest, group.Bend, group.BendStep);
+    SetPlane<N>([&](int axis, int corner)
+      { return block.ClampedBend[axis][corners.At[corner]]; }, group.Bend, group.BendStep);
   }
-  else
+
+  const V signBit = hn::BitCast(DF(), hn::Set(DU(), 0x80000000u));
+  V placeRest2 = hn::Zero(DF());
+  V directionRest2 = hn::Zero(DF());
+  V bendRest2 = hn::Zero(DF());
+  V along = Load(walk.Along + tile.First[begin]);
+  V across = walk.GetLeastAcross(tile.First[begin]);
+  for (std::size_t r = begin; r < end; ++r)
   {
-    group.BendRest = hn::Zero(DF());
+    const std::size_t i = tile.First[r];
+    const V lambda = corners.Lambda.At(tile.LaneColumn, tile.Columns[r], tile.Column[r]);
+    const V mu = corners.Mu.At(tile.LaneRow, tile.Rows[r], tile.Row[r]);
+    V values[N];
     for (int axis = 0; axis < N; ++axis)
     {
-      group.Bend[axis] = group.BendStep[0][axis] = group.BendStep[1][axis] = hn::Zero(DF());
+      const VU cells = hn::Sub(hn::LoadU(DU(), block.Cell[axis] + i), origin[axis]);
+      values[axis] =
+        hn::Add(hn::ConvertTo(DF(), hn::BitCast(DI(), cells)), Load(block.Fraction[axis] + i));
     }
+    placeRest2 = hn::Max(placeRest2, GetRest2(values, group.Place, group.PlaceStep, lambda, mu));
+    for (int axis = 0; axis < N; ++axis)
+    {
+      values[axis] = Load(block.U[axis] + i);
+    }
+    const V sign = hn::And(Dot(values, side), signBit);
+    for (V& component : values)
+    {
+      component = hn::Xor(component, sign);
+    }
+    directionRest2 = hn::Max(directionRest2, GetRest2(values, group.U, group.UStep, lambda, mu));
+    if (walk.Setup.Curved)
+    {
+      for (int axis = 0; axis < N; ++axis)
+      {
+        values[axis] = Load(block.ClampedBend[axis] + i);
+      }
+      bendRest2 = hn::Max(bendRest2, GetRest2(values, group.Bend, group.BendStep, lambda, mu));
+    }
+    along = hn::Min(along, Load(walk.Along + i));
+    across = hn::Min(across, walk.GetLeastAcross(i));
   }
+  group.PlaceRest = hn::Sqrt(hn::MaxOfLanes(DF(), placeRest2));
+  group.DirectionRest = hn::Sqrt(hn::MaxOfLanes(DF(), directionRest2));
+  group.BendRest = hn::Sqrt(hn::MaxOfLanes(DF(), bendRest2));
+  const float rootAlong = std::sqrt(LeastLane(along));
+  extent.HalfLength = walk.GetLengthSupport() / rootAlong + Slack;
+  extent.HalfWidth = walk.GetWidthSupport() / std::sqrt(LeastLane(across)) + Slack;
+  extent.Travel = walk.GetTravel() / rootAlong;
+  extent.Tapers = !walk.IsStreaks();
+}
+
+/// What follows from the numbers that FitGroup finds.
+template <int N, class Walk>
+STAGE_INLINE void FinishGroup(const Walk& walk, const Extent& extent, Group<N>& group)
+{
   ToDistances(walk, group.PlaceStep[0]);
   ToDistances(walk, group.PlaceStep[1]);
   if (walk.IsOblique())
@@ -362,7 +378,6 @@ STAGE_INLINE Group<N> GetGroup(const Walk& walk, const Lines<N>& lines, const Ex
   }
   SetAcrossFlow(group);
   group.SetBounds(extent);
-  return group;
 }
 } // namespace HWY_NAMESPACE
 } // namespace steerable

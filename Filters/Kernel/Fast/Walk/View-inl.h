@@ -38,15 +38,17 @@ STAGE_INLINE void ToAcross(const V (&v)[N], const V (&u)[N], V (&across)[AxesAcr
   }
 }
 
-/**
- * Registers that share a list, as a group that changes with λ within each and with μ from one to the next;
- * what a corner needs of it to find out which of them it reaches.
- */
+/// Registers that share a list, as a group; what a corner needs of it to find out which it reaches.
 template <int N>
 struct Span
 {
   std::size_t Begin;
   std::size_t End;
+  /// Middles of the registers on the rulers, and what no register goes beyond on either side of its own.
+  float Lambda[TileRegisters];
+  float Mu[TileRegisters];
+  float HalfLambda = 0.0f;
+  float HalfMu = 0.0f;
   /// Across the flow.
   V Bend[AxesAcross<N>];
   V PlaceStep[2][AxesAcross<N>];
@@ -55,8 +57,8 @@ struct Span
   const Group<N>& Whole;
   const Extent& Surflet;
 
-  STAGE_INLINE Span(
-    std::size_t begin, std::size_t end, const Group<N>& group, const Extent& extent)
+  STAGE_INLINE Span(const Tile& tile, const SpanCorners& corners, std::size_t begin,
+    std::size_t end, const Group<N>& group, const Extent& extent)
     : Begin(begin)
     , End(end)
     , Whole(group)
@@ -69,15 +71,15 @@ struct Span
       ToAcross<N>(group.UStep[k], group.U, this->UStep[k]);
       ToAcross<N>(group.BendStep[k], group.U, this->BendStep[k]);
     }
-  }
-
-  /// μ of a register.
-  float GetMu(std::size_t r) const
-  {
-    return this->End - this->Begin < 2 ? 0.0f
-                                       : 2.0f * static_cast<float>(r - this->Begin) /
-          static_cast<float>(this->End - this->Begin - 1) -
-        1.0f;
+    for (std::size_t r = begin; r < end; ++r)
+    {
+      const float columns = 0.5f * (tile.Columns[r] - 1.0f);
+      const float rows = 0.5f * (tile.Rows[r] - 1.0f);
+      this->Lambda[r] = corners.Lambda.At(tile.Column[r] + columns);
+      this->Mu[r] = corners.Mu.At(tile.Row[r] + rows);
+      this->HalfLambda = std::max(this->HalfLambda, columns * corners.Lambda.Step);
+      this->HalfMu = std::max(this->HalfMu, rows * corners.Mu.Step);
+    }
   }
 };
 
@@ -90,26 +92,64 @@ struct View
   V Width;
 
   STAGE_INLINE View() {}
+};
 
-  /// Whether there is a λ in [-1, 1] at which T is within `width` of 0.
-  static STAGE_INLINE hn::Mask<DF> IsNear(
-    const V (&t)[AxesAcross<N>], const V (&step)[AxesAcross<N>], V width)
+/**
+ * Whether T of a view comes within its width of 0 at some λ and μ no farther than these from given ones. In
+ * space exactly for λ, and for μ by the length of its step.
+ */
+template <int N>
+class NearTest
+{
+public:
+  STAGE_INLINE NearTest(const View<N>& view, V width, float halfLambda, float halfMu)
+    : Seen(view)
+    , HalfLambda(Const(halfLambda))
   {
     if constexpr (N == 2)
     {
-      return hn::Le(hn::Sub(hn::Abs(t[0]), hn::Abs(step[0])), width);
+      this->Limit = hn::MulAdd(hn::Abs(view.Step[0][0]), this->HalfLambda,
+        hn::MulAdd(hn::Abs(view.Step[1][0]), Const(halfMu), width));
     }
     else
     {
-      const V one = Const(1.0f);
-      const V tStep = Dot(t, step);
-      const V step2 = hn::Add(Dot(step, step), Const(1e-20f));
-      const V best = hn::Max(hn::Min(hn::Div(tStep, step2), one), hn::Neg(one));
-      const V least = hn::MulAdd(hn::MulSub(best, step2, hn::Add(tStep, tStep)), best, Dot(t, t));
-      return hn::And(
-        hn::Le(least, hn::MulAdd(width, width, Const(1e-5f))), hn::Ge(width, hn::Zero(DF())));
+      width = hn::MulAdd(hn::Sqrt(Dot(view.Step[1], view.Step[1])), Const(halfMu), width);
+      this->Limit = hn::IfThenElse(hn::Lt(width, hn::Zero(DF())), Const(-1.0f),
+        hn::MulAdd(width, width, Const(1e-5f)));
+      const V step2 = hn::Add(Dot(view.Step[0], view.Step[0]), Const(1e-20f));
+      this->InverseStep2 = hn::Div(Const(1.0f), step2);
     }
   }
+
+  STAGE_INLINE hn::Mask<DF> IsNear(float lambda, float mu) const
+  {
+    V t[AxesAcross<N>];
+    for (int axis = 0; axis < AxesAcross<N>; ++axis)
+    {
+      t[axis] = hn::NegMulAdd(Const(lambda), this->Seen.Step[0][axis],
+        hn::NegMulAdd(Const(mu), this->Seen.Step[1][axis], this->Seen.T[axis]));
+    }
+    if constexpr (N == 2)
+    {
+      return hn::Le(hn::Abs(t[0]), this->Limit);
+    }
+    else
+    {
+      V nearest = hn::Mul(Dot(t, this->Seen.Step[0]), this->InverseStep2);
+      nearest = hn::Max(hn::Min(nearest, this->HalfLambda), hn::Neg(this->HalfLambda));
+      for (int axis = 0; axis < N; ++axis)
+      {
+        t[axis] = hn::NegMulAdd(nearest, this->Seen.Step[0][axis], t[axis]);
+      }
+      return hn::Le(Dot(t, t), this->Limit);
+    }
+  }
+
+private:
+  const View<N>& Seen;
+  V HalfLambda;
+  V Limit;
+  V InverseStep2;
 };
 
 /// How a span sees corners at these indices, displaced by `jitter` and, at most, by as much as `loose`.
@@ -181,15 +221,10 @@ STAGE_INLINE void SetReaching(const Walk& walk, const Span<N>& span, const Corne
     LoadAll(list.Offset, i, offset);
     LoadAll(list.Jitter, i, jitter);
     const View<N> view = GetView(walk, span, offset, jitter, 0.0f);
+    const NearTest<N> test(view, view.Width, span.HalfLambda, span.HalfMu);
     for (std::size_t r = span.Begin; r < span.End; ++r)
     {
-      const V mu = Const(span.GetMu(r));
-      V t[AxesAcross<N>];
-      for (int axis = 0; axis < AxesAcross<N>; ++axis)
-      {
-        t[axis] = hn::NegMulAdd(mu, view.Step[1][axis], view.T[axis]);
-      }
-      const auto near = View<N>::IsNear(t, view.Step[0], view.Width);
+      const auto near = test.IsNear(span.Lambda[r], span.Mu[r]);
       reaching[r] |= ToBits(all ? listed : hn::And(listed, near)) << i;
     }
   }
@@ -217,10 +252,9 @@ HWY_NOINLINE void Sift(
       offset[axis] = hn::ConvertTo(DF(), hn::LoadU(DI(), list.Index[axis] + i));
     }
     const View<N> view = GetView(walk, span, offset, middle, walk.Setup.JitterRadius);
-    const V width =
-      hn::Add(hn::Add(view.Width, looseness), hn::Sqrt(Dot(view.Step[1], view.Step[1])));
+    const NearTest<N> test(view, hn::Add(view.Width, looseness), 1.0f, 1.0f);
     const auto listed = hn::FirstN(DF(), list.Count - i);
-    std::uint64_t bits = ToBits(hn::And(listed, View<N>::IsNear(view.T, view.Step[0], width)));
+    std::uint64_t bits = ToBits(hn::And(listed, test.IsNear(0.0f, 0.0f)));
     for (; bits != 0; bits &= bits - 1, ++kept)
     {
       const std::size_t from = i + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);

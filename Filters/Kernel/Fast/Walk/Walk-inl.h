@@ -25,38 +25,30 @@ namespace steerable
 {
 namespace HWY_NAMESPACE
 {
-template <int N, bool Variant, bool Aligned>
+template <int N, WalkKind Kind>
 class Walk
 {
 public:
   STAGE_INLINE Walk(const NoiseSetup& setup, const OctaveSetup& octave, const MetricBlock& block)
     : Setup(setup, octave, block)
-    , GroupLines()
   {
   }
 
-  /// Register `r` of the tile is that from sample `i` of the block, of which it uses `count` lanes.
-  STAGE_INLINE void SetRegister(std::size_t r, std::size_t i, std::size_t count)
-  {
-    this->Samples.First[r] = i;
-    this->Samples.Count[r] = count;
-    this->Total[r] = Sums();
-  }
-
-  /// Sums up the first `registers` of the tile; returns how many corners their samples visited.
-  STAGE_INLINE std::uint64_t Evaluate(std::size_t registers)
+  /// Sums up a tile; returns how many corners its samples visited.
+  STAGE_INLINE std::uint64_t Evaluate(const Tile& tile)
   {
     this->Visited = 0;
-    this->Samples.Registers = registers;
-    SetLines(this->Setup, this->Samples, this->GroupLines, this->Surflet);
-    this->AddSpan(0, registers);
+    this->Samples = &tile;
+    std::fill_n(this->Total[0].Values[0],
+      tile.Registers * sizeof(typename SurfletSums<N>::Stored) / sizeof(float), 0.0f);
+    this->AddSpan(0, tile.Registers);
     return this->Visited;
   }
 
-  STAGE_INLINE std::size_t GetFirst(std::size_t r) const { return this->Samples.First[r]; }
   STAGE_INLINE V GetNoise(std::size_t r) const
   {
-    return Normalized(this->Setup.Setup, N, this->Total[r]);
+    return Normalized(this->Setup.Setup, N,
+      GetSums<N>(this->Setup, this->Samples->First[r], SurfletSums<N>(this->Total[r])));
   }
 
 private:
@@ -65,18 +57,21 @@ private:
   /// Registers [begin, end): together if they are alike, else half by half.
   HWY_NOINLINE void AddSpan(std::size_t begin, std::size_t end)
   {
-    const float* rest = this->GroupLines.PlaceRest;
-    if (*std::max_element(rest + begin, rest + end) < LargestSpread) // else it cannot be
+    const SpanCorners corners(*this->Samples, begin, end);
+    VU origin[N];
+    Group<N> group;
+    Extent extent;
+    FitGroup(this->Setup, *this->Samples, corners, begin, end, origin, group, extent);
+    if (hn::GetLane(group.PlaceRest) < LargestSpread) // else it cannot be
     {
-      VU origin[N];
-      const Group<N> group =
-        GetGroup(this->Setup, this->GroupLines, this->Surflet, begin, end, origin);
+      FinishGroup(this->Setup, extent, group);
       const V row = this->Setup.IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
-      const Reach<N> reach(group, this->Surflet, row);
-      if (hn::GetLane(reach.LargestWidth) - this->Surflet.HalfWidth < LargestSpread &&
+      const Reach<N> reach(group, extent, row);
+      if (hn::GetLane(reach.LargestWidth) - extent.HalfWidth < LargestSpread &&
         hn::GetLane(reach.Spread) < LargestExtent)
       {
-        this->AddTogether(Span<N>(begin, end, group, this->Surflet), reach, origin);
+        this->AddTogether(
+          Span<N>(*this->Samples, corners, begin, end, group, extent), reach, origin);
         return;
       }
     }
@@ -205,7 +200,7 @@ private:
   /// Every sample of a register goes along the same rows, counted from its own cell, by itself.
   HWY_NOINLINE void AddApart(std::size_t r)
   {
-    const std::size_t from = this->Samples.First[r];
+    const std::size_t from = this->Samples->First[r];
     VU origin[N];
     for (int axis = 0; axis < N; ++axis)
     {
@@ -274,15 +269,16 @@ private:
         {
           offset[axis] = hn::ConvertTo(DF(), corner[axis]);
         }
-        Corner<N> described = Describe(this->Setup, offset, HashCorners(this->Setup, origin, corner));
-        described.RowWindow = GetRowWindow(this->Setup, sample, offset);
-        for (int axis = 1; axis < N; ++axis)
-        {
-          described.FromRow[axis] = GetDistance(sample, offset[axis], axis);
-        }
-        this->WithKind([&](auto curved, auto normalize) HWY_ATTR
-          { AddSurflet<curved(), normalize()>(this->Setup, sample, described, this->Total[r]); });
-        this->Visited += this->Samples.Count[r];
+        const Corner<N> described =
+          Describe(this->Setup, offset, HashCorners(this->Setup, origin, corner));
+        this->WithKind(
+          [&](auto kind) HWY_ATTR
+          {
+            SurfletSums<N> sums(this->Total[r]);
+            AddSurflet<decltype(kind)>(this->Setup, sample, described, sums);
+            sums.Store(this->Total[r]);
+          });
+        this->Visited += this->Samples->GetCount(r);
       }
     }
   }
@@ -314,59 +310,71 @@ private:
     SetReaching(this->Setup, span, list, reaching);
     for (std::size_t r = span.Begin; r < span.End; ++r)
     {
-      const std::uint64_t bits = reaching[r];
-      this->Visited += this->Samples.Count[r] * hwy::PopCount(bits);
-      const Sample<N> sample(
-        this->Setup.Setup, this->Setup.Block, this->Samples.First[r], origin);
-      SetFromRow(this->Setup, sample, list);
-      this->WithKind([&](auto curved, auto normalize) HWY_ATTR
-        { this->template AddSurflets<curved(), normalize()>(sample, list, bits, this->Total[r]); });
+      this->Visited += this->Samples->GetCount(r) * hwy::PopCount(reaching[r]);
+      this->WithKind([&](auto kind) HWY_ATTR
+        { this->template AddSurflets<decltype(kind)>(r, origin, list, reaching[r]); });
     }
   }
 
-  /// Calls `work` with what surflets take into account, as types: bends, and which sums are wanted.
+  /// Calls `work` with the kind of surflets that there are.
   template <class Work>
   STAGE_INLINE void WithKind(Work&& work) const
   {
-#ifdef STEERABLENOISE_INSTRUMENTED
-    constexpr std::true_type straight;
-#else
-    constexpr std::bool_constant<Variant> straight; // there variants are not worth more code
-#endif
-    this->Setup.Setup.Curved ? this->WithSums(work, std::true_type()) : this->WithSums(work, straight);
+    if constexpr (Kind == WalkKind::Variant)
+    {
+      return this->template WithSums<true, false>(work); // not worth more code
+    }
+    else if constexpr (N == 3)
+    {
+      if (this->Setup.Setup.Biaxial)
+      {
+        return this->template WithBends<true>(work);
+      }
+    }
+    this->template WithBends<false>(work);
   }
 
-  template <class Work, class Curved>
-  STAGE_INLINE void WithSums(Work&& work, Curved curved) const
+  template <bool Biaxial, class Work>
+  STAGE_INLINE void WithBends(Work&& work) const
+  {
+#ifdef STEERABLENOISE_INSTRUMENTED
+    constexpr bool straight = true; // bends of 0
+#else
+    constexpr bool straight = false;
+#endif
+    return this->Setup.Setup.Curved ? this->template WithSums<true, Biaxial>(work)
+                                    : this->template WithSums<straight, Biaxial>(work);
+  }
+
+  template <bool Curved, bool Biaxial, class Work>
+  STAGE_INLINE void WithSums(Work&& work) const
   {
     switch (this->Setup.Params.Normalize)
     {
       case Normalization::UnitVariance:
-        return work(curved, std::integral_constant<Normalization, Normalization::UnitVariance>());
+        return work(SurfletKind<Curved, Normalization::UnitVariance, Biaxial>());
       case Normalization::WeightSum:
-        return work(curved, std::integral_constant<Normalization, Normalization::WeightSum>());
+        return work(SurfletKind<Curved, Normalization::WeightSum, Biaxial>());
       case Normalization::None:
       default:
-        return work(curved, std::integral_constant<Normalization, Normalization::None>());
+        return work(SurfletKind<Curved, Normalization::None, Biaxial>());
     }
   }
 
-  /// Adds the corners whose bits are set.
-  template <bool Curved, Normalization Normalize>
+  /// Adds the corners whose bits are set to register `r`.
+  template <class SurfletsKind>
   HWY_NOINLINE void AddSurflets(
-    const Sample<N>& sample, const CornerList<N>& list, std::uint64_t bits, Sums& total)
+    std::size_t r, const VU (&origin)[N], const CornerList<N>& list, std::uint64_t bits)
   {
-    Sums sums = total;
+    const Sample<N> sample(
+      this->Setup.Setup, this->Setup.Block, this->Samples->First[r], origin);
+    SurfletSums<N> sums(this->Total[r]);
     for (; bits != 0; bits &= bits - 1)
     {
-      Corner<N> corner(list, hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
-      if constexpr (!Aligned)
-      {
-        corner.RowWindow = GetRowWindow(this->Setup, sample, corner.Offset);
-      }
-      AddSurflet<Curved, Normalize>(this->Setup, sample, corner, sums);
+      const Corner<N> corner(list, hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
+      AddSurflet<SurfletsKind>(this->Setup, sample, corner, sums);
     }
-    total = sums;
+    sums.Store(this->Total[r]);
   }
 
   /// Samples that are farther apart than this, as their surflets see it, do not share a list.
@@ -375,12 +383,10 @@ private:
   /// Nor do samples this many cells from their middle: distances of corners must keep their precision.
   static constexpr float LargestExtent = 16.0f;
 
-  const WalkSetup<N, Variant, Aligned> Setup;
-  Tile Samples;
+  const WalkSetup<N, Kind> Setup;
+  const Tile* Samples = nullptr;
   std::uint64_t Visited = 0;
-  Lines<N> GroupLines;
-  Extent Surflet;
-  Sums Total[TileRegisters];
+  typename SurfletSums<N>::Stored Total[TileRegisters];
 };
 } // namespace HWY_NAMESPACE
 } // namespace steerable

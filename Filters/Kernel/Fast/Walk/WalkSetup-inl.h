@@ -16,15 +16,19 @@ namespace steerable
 {
 namespace HWY_NAMESPACE
 {
-/**
- * `Variant`: more than the plain loops know, see NoiseSetup. `Aligned`: the samples of a register have their
- * places on all axes but the first in common.
- */
-template <int N, bool IsVariant, bool IsAligned>
+/// Which loops: those of the defaults, the same under the lattice's window, or all that NoiseSetup calls variants.
+enum class WalkKind
+{
+  Plain,
+  Windowed,
+  Variant
+};
+
+template <int N, WalkKind Kind>
 struct WalkSetup
 {
-  static constexpr bool Variant = IsVariant;
-  static constexpr bool Aligned = IsAligned;
+  static constexpr bool Variant = Kind == WalkKind::Variant;
+  static constexpr bool Windowed = Kind == WalkKind::Windowed;
 
   const NoiseSetup& Setup;
   const NoiseParameters& Params;
@@ -35,8 +39,6 @@ struct WalkSetup
   const float* Across;
   const float* Second;
   V InverseReach;
-  /// From 0 at the first lane to 1 at the last.
-  V LaneStep;
 
   STAGE_INLINE WalkSetup(const NoiseSetup& setup, const OctaveSetup& octave, const MetricBlock& block)
     : Setup(setup)
@@ -48,7 +50,6 @@ struct WalkSetup
     , Second(setup.Curved ? block.BentSecond : block.Second)
     // Without a window the fade is taken at 0.
     , InverseReach(Const(Params.LatticeWindow ? 1.0f / (Params.Quality + 1) : 0.0f))
-    , LaneStep(hn::Mul(Ramp(0.0f), Const(1.0f / std::max<float>(1.0f, Lanes - 1.0f))))
   {
   }
 

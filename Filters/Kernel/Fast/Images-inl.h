@@ -165,16 +165,31 @@ HWY_NOINLINE void WalkPatch(const NoiseSetup& setup, const OctaveSetup& octave, 
 {
   Walk<N, Kind> walk(setup, octave, block);
   Tile tile(RowsOfRegisters(rows) / LaneRows, LaneColumns);
-  for (std::size_t i = 0; i < columns; i += Lanes)
+  constexpr std::size_t tileColumns = TileRegisters * Lanes / PatchRows;
+  for (std::size_t i = 0; i < columns; i += tileColumns)
   {
-    tile.Registers = 0;
-    for (std::size_t half = 0; half < LaneRows && i + half * LaneColumns < columns; ++half)
+    const std::size_t end = std::min(columns, i + tileColumns);
+    if (i == 0 || end < i + tileColumns)
     {
-      for (std::size_t row = 0; row < rows; row += LaneRows)
+      std::size_t r = 0;
+      for (std::size_t column = i; column < end; column += LaneColumns)
       {
-        const std::size_t column = half * LaneColumns;
-        tile.SetRegister(tile.Registers++, (row + half) * PatchStride + i, column, row,
-          std::min(LaneColumns, columns - i - column), std::min(LaneRows, rows - row));
+        // See PairRows.
+        const std::size_t half = column % Lanes / LaneColumns;
+        const std::size_t first = column / Lanes * Lanes + half * PatchStride;
+        for (std::size_t row = 0; row < rows; row += LaneRows)
+        {
+          tile.SetRegister(r++, first + row * PatchStride, column - i, row,
+            std::min(LaneColumns, end - column), std::min(LaneRows, rows - row));
+        }
+      }
+      tile.Registers = r;
+    }
+    else
+    {
+      for (std::size_t r = 0; r < tile.Registers; ++r)
+      {
+        tile.First[r] += tileColumns;
       }
     }
     AddTile(setup, octave, block, walk, tile, visited);
@@ -301,7 +316,7 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
     }
   }
 
-  const std::int64_t mostRows = setup.SingleCell ? 1 : TileRegisters;
+  const std::int64_t mostRows = setup.SingleCell ? 1 : PatchRows;
   const std::int64_t mostColumns = setup.SingleCell ? CellsColumns : PatchColumns;
   Patch patch;
   for (std::size_t row = rowBegin; row < rowEnd; row += patch.Rows)

@@ -19,13 +19,14 @@ namespace steerable
 constexpr std::size_t BlockSize = 512;
 /// Samples of a row of an image at Quality 0: fewer, since their arrays then stay in the nearest cache.
 constexpr std::size_t CellsColumns = 256;
-/// Registers of samples that share lists of corners where they can; in images one below the other.
-constexpr std::size_t TileRegisters = 8;
-/// Where walks want it, a block of an image is as many rows of this many samples.
-constexpr std::size_t PatchColumns = BlockSize / TileRegisters;
+/// Samples that share lists of corners where they can.
+constexpr std::size_t TileSamples = 64;
+/// Where walks want it, a block of an image is this many rows of this many samples.
+constexpr std::size_t PatchRows = 8;
+constexpr std::size_t PatchColumns = BlockSize / PatchRows;
 /// Room for a whole SIMD register behind each row, and behind the block.
 constexpr std::size_t PatchStride = PatchColumns + 16;
-constexpr std::size_t BlockRoom = TileRegisters * PatchStride + 16;
+constexpr std::size_t BlockRoom = PatchRows * PatchStride + 16;
 /// A row with its neighbours to either side, and room behind.
 constexpr std::size_t RowRoom = PatchColumns + 2 * ImageGrid::MaximumStride + 32;
 
@@ -116,7 +117,7 @@ struct MetricBlock
   alignas(64) float Shapes[3 * BlockRoom];
   alignas(64) double MetricTuples[6 * BlockRoom];
   alignas(64) double Positions[3 * BlockRoom];
-  alignas(64) float DirectionRows[TileRegisters + 2][3][RowRoom];
+  alignas(64) float DirectionRows[PatchRows + 2][3][RowRoom];
 };
 } // namespace steerable
 

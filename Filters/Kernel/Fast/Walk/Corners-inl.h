@@ -16,7 +16,9 @@ namespace steerable
 namespace HWY_NAMESPACE
 {
 /// Corners of a list, or lattice rows, that go through the stages together: a bit for each.
-constexpr std::size_t ListSize = 64;
+constexpr std::size_t ListSize = 128;
+constexpr std::size_t ListWords = ListSize / 64;
+using ListBits = std::uint64_t[ListWords];
 
 /// Corners that may be in reach, and what samples need to know of them.
 template <int N>

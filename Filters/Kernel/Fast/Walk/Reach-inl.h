@@ -33,6 +33,28 @@ STAGE_INLINE V GetTaper(V distance, V inverseLength, V halfWidth, bool tapers)
   return hn::IfThenElse(hn::Lt(left, hn::Zero(DF())), Const(-1e9f), hn::Mul(halfWidth, taper));
 }
 
+/// Axes across the flow: in 2D the normal (-u_y, u_x), in 3D those of space.
+template <int N>
+constexpr int AxesAcross = N == 2 ? 1 : N;
+
+/// A vector across u on these axes.
+template <int N>
+STAGE_INLINE void ToAcross(const V (&v)[N], const V (&u)[N], V (&across)[AxesAcross<N>])
+{
+  if constexpr (N == 2)
+  {
+    across[0] = hn::MulSub(u[0], v[1], hn::Mul(u[1], v[0]));
+  }
+  else
+  {
+    const V along = Dot(v, u);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      across[axis] = hn::NegMulAdd(along, u[axis], v[axis]);
+    }
+  }
+}
+
 /// Where lattice rows are cut: the reach of registers together in all lanes, or that of a sample in each.
 template <int N>
 struct Reach
@@ -53,8 +75,14 @@ struct Reach
   V AlongReach;
   V Across[3];
   bool Tapers;
+  /// Of bent surflets: as many as leave the parabola little to be off a line, see CutRows.
+  int Sections = 1;
 
   STAGE_INLINE Reach() {}
+  STAGE_INLINE void SetSections(float sag)
+  {
+    this->Sections = sag < 0.8f ? 1 : sag < 3.2f ? 2 : 4;
+  }
 
   /**
    * All that a group reaches. Of its first step the part on a lattice row, as long as `row`, is either a
@@ -78,6 +106,8 @@ struct Reach
     {
       this->SetAcross(group, extent, row);
     }
+    this->SetSections(
+      hn::GetLane(hn::Mul(hn::Mul(this->Length, this->Length), this->BendLength)));
   }
 
 private:
@@ -140,6 +170,8 @@ STAGE_INLINE Reach<N> GetReachApart(const Walk& walk, std::size_t first)
   reach.Spread = reach.RowSpread = hn::Zero(DF());
   reach.Across[0] = reach.Across[1] = reach.Across[2] = hn::Zero(DF());
   reach.Tapers = !walk.IsStreaks();
+  reach.SetSections(
+    GreatestLane(hn::Mul(hn::Mul(reach.Length, reach.Length), reach.BendLength)));
   return reach;
 }
 
@@ -258,58 +290,13 @@ STAGE_INLINE void GetRange(const Walk& walk, const Reach<N>& reach, int number,
   last = hn::IfThenElse(hn::Gt(low, high), Const(-1e9f), hn::Floor(last));
 }
 
-/// What a tube around the parabola leaves of [low, high], whose s bound its sag and its width.
-template <int N, class Walk>
-STAGE_INLINE void CutByTube(const Walk& walk, const Reach<N>& reach, V s0, V se,
-  const V (&t0)[N], const V (&te)[N], V& low, V& high)
-{
-  const V radius = Const(walk.Setup.JitterRadius);
-  const V first = hn::MulAdd(low, se, s0);
-  const V last = hn::MulAdd(high, se, s0);
-  const V most = hn::Max(hn::Abs(first), hn::Abs(last));
-  const V least = hn::IfThenElseZero(
-    hn::Ge(hn::Mul(first, last), hn::Zero(DF())), hn::Min(hn::Abs(first), hn::Abs(last)));
-  V width = GetTaper(hn::Sub(least, hn::Add(radius, reach.AlongReach)), reach.InverseLength,
-    reach.HalfWidth, reach.Tapers);
-  width = hn::Add(
-    width, hn::Add(Quadratic(reach.Across, hn::Add(most, radius)), GetLooseness(walk, reach)));
-  V sag = hn::Zero(DF());
-  if (walk.Setup.Curved)
-  {
-    const V quarter = Const(0.25f);
-    const V most2 = hn::Mul(most, most);
-    const V least2 = hn::Mul(least, least);
-    sag = hn::Mul(quarter, hn::Add(most2, least2));
-    width = hn::MulAdd(hn::Mul(quarter, hn::Sub(most2, least2)), reach.BendLength, width);
-  }
-  // |t0 + x te - sag bend| < width.
-  V A = hn::Zero(DF());
-  V B = hn::Zero(DF());
-  V C = hn::Neg(hn::Mul(width, hn::Max(width, hn::Zero(DF()))));
-  for (int i = 0; i < N; ++i)
-  {
-    const V t = hn::NegMulAdd(sag, reach.Bend[i], t0[i]);
-    A = hn::MulAdd(te[i], te[i], A);
-    B = hn::MulAdd(t, te[i], B);
-    C = hn::MulAdd(t, t, C);
-  }
-  // A row along the flow: what the clamped coefficient adds must not count.
-  const V clamped = hn::Max(A, Const(1e-6f));
-  C = hn::NegMulAdd(hn::Sub(clamped, A), hn::Max(hn::Mul(low, low), hn::Mul(high, high)), C);
-  A = clamped;
-  const V discriminant = hn::NegMulAdd(A, C, hn::Mul(B, B));
-  const V inverseA = hn::Div(Const(1.0f), A);
-  const V root = hn::Mul(hn::Sqrt(hn::Max(discriminant, hn::Zero(DF()))), inverseA);
-  const V center = hn::Neg(hn::Mul(B, inverseA));
-  const V slack = Const(1e-3f);
-  low = hn::Max(low, hn::Sub(hn::Sub(center, root), slack));
-  high = hn::Min(high, hn::Add(hn::Add(center, root), slack));
-  high = hn::IfThenElse(hn::Lt(discriminant, hn::Zero(DF())), Const(-1e9f), high);
-}
-
 /**
- * Interval of a register of rows: a slab along the flow, then a tube around the parabola, whose sag
- * and width are known within a band once the slab has bounded the distance along the flow.
+ * Interval of a register of rows. The surflet is cut into sections along the flow. In each the parabola is
+ * close to a line, so that what the ellipsoid around it leaves of the row is a quadratic's. With W the
+ * half-width, L the half-length, and e and a what t and s can be off, |t| <= W √(1 - (|s| - a)²/L²) + e
+ * implies, by (x + y)² <= (1 + d) x² + (1 + 1/d) y² with d = e/W and d = a/L,
+ *
+ *   t² + W (W + e) s² / (L (L + a)) <= (W + e)² + W (W + e) a / L.
  */
 template <int N, class Walk>
 STAGE_INLINE void CutRows(
@@ -325,38 +312,91 @@ STAGE_INLINE void CutRows(
   }
   ToPlace(walk, index, row);
   // s and the part t across the flow at the beginning of the row, and their changes along it.
-  V s0 = hn::Zero(DF());
-  V se = walk.IsOblique() ? hn::Zero(DF()) : reach.U[0];
+  V step[N];
   for (int i = 0; i < N; ++i)
   {
     row[i] = hn::Add(row[i], Const(walk.Setup.JitterMiddle));
-    s0 = hn::MulAdd(row[i], reach.U[i], s0);
-    if (walk.IsOblique())
-    {
-      se = hn::MulAdd(Const(walk.Setup.LatticeSteps[i][0]), reach.U[i], se);
-    }
+    step[i] = Const(walk.Setup.LatticeSteps[i][0]);
   }
-  V t0[N];
-  V te[N];
-  for (int i = 0; i < N; ++i)
-  {
-    t0[i] = hn::NegMulAdd(s0, reach.U[i], row[i]);
-    te[i] = hn::NegMulAdd(se, reach.U[i], Const(walk.Setup.LatticeSteps[i][0]));
-  }
+  const V s0 = Dot(row, reach.U);
+  const V se = Dot(step, reach.U);
+  V t0[AxesAcross<N>];
+  V te[AxesAcross<N>];
+  V bend[AxesAcross<N>];
+  ToAcross<N>(row, reach.U, t0);
+  ToAcross<N>(step, reach.U, te);
+  ToAcross<N>(reach.Bend, reach.U, bend);
   const V inverse = Inverse(se);
-  const V middle = hn::Neg(hn::Mul(s0, inverse));
-  const V half =
-    hn::Abs(hn::Mul(hn::Add(reach.Length, Const(walk.Setup.JitterRadius)), inverse));
-  low = hn::Max(low, hn::Sub(middle, half));
-  high = hn::Min(high, hn::Add(middle, half));
-  for (int round = 0; round < (walk.Setup.Curved ? 2 : 1); ++round)
-  {
-    CutByTube(walk, reach, s0, se, t0, te, low, high);
-  }
-  low = hn::Sub(low, reach.RowSpread);
-  high = hn::Add(high, reach.RowSpread);
-}
+  const V radius = Const(walk.Setup.JitterRadius);
+  const V length = hn::Add(reach.Length, radius);
+  const V offAlong = hn::Add(reach.AlongReach, radius);
+  const V looseness = GetLooseness(walk, reach);
+  const V overLength = hn::Mul(offAlong, reach.InverseLength);
+  // 1 / (L (L + a))
+  const V tapers = reach.Tapers
+    ? hn::Mul(reach.InverseLength, hn::Div(reach.InverseLength, hn::Add(Const(1.0f), overLength)))
+    : hn::Zero(DF());
+  const int sections = walk.Setup.Curved ? reach.Sections : 1;
+  const V section = hn::Mul(length, Const(2.0f / static_cast<float>(sections)));
+  const V offParabola = hn::Mul(hn::Mul(section, section), Const(1.0f / 16.0f));
 
+  V least = Const(1e9f);
+  V most = Const(-1e9f);
+  V begin = hn::Neg(length);
+  V beginX = hn::Mul(hn::Sub(begin, s0), inverse);
+  for (int i = 0; i < sections; ++i)
+  {
+    const V end = hn::Add(begin, section);
+    const V endX = hn::Mul(hn::Sub(end, s0), inverse);
+    const V farthest = hn::Add(hn::Max(hn::Abs(begin), hn::Abs(end)), radius);
+    V off = hn::Add(Quadratic(reach.Across, farthest), looseness);
+    off = hn::Add(off, Const(1e-3f));
+    V t[AxesAcross<N>];
+    V change[AxesAcross<N>];
+    std::copy(t0, t0 + AxesAcross<N>, t);
+    std::copy(te, te + AxesAcross<N>, change);
+    if (walk.Setup.Curved)
+    {
+      // s²/2 is between m s - begin end/2 and (end - begin)²/8 less, m the middle.
+      off = hn::MulAdd(offParabola, reach.BendLength, off);
+      const V middle = hn::Mul(Const(0.5f), hn::Add(begin, end));
+      const V sag = hn::Sub(hn::MulSub(middle, s0, hn::Mul(Const(0.5f), hn::Mul(begin, end))), offParabola);
+      const V sagChange = hn::Mul(middle, se);
+      for (int axis = 0; axis < AxesAcross<N>; ++axis)
+      {
+        t[axis] = hn::NegMulAdd(sag, bend[axis], t[axis]);
+        change[axis] = hn::NegMulAdd(sagChange, bend[axis], change[axis]);
+      }
+    }
+    const V width = hn::Add(reach.HalfWidth, off);
+    const V both = hn::Mul(reach.HalfWidth, width);
+    const V taper = hn::Mul(both, tapers);
+    const V limit = hn::MulAdd(both, reach.Tapers ? overLength : hn::Zero(DF()), hn::Mul(width, width));
+    // A row along a streak that does not taper: what the clamped coefficient adds must not count.
+    V A = hn::MulAdd(hn::Mul(taper, se), se, Dot(change, change));
+    const V B = hn::MulAdd(hn::Mul(taper, s0), se, Dot(t, change));
+    V C = hn::Sub(hn::MulAdd(hn::Mul(taper, s0), s0, Dot(t, t)), limit);
+    if (!reach.Tapers)
+    {
+      const V clamped = hn::Max(A, Const(1e-6f));
+      C = hn::NegMulAdd(hn::Sub(clamped, A), Const(1e6f), C);
+      A = clamped;
+    }
+    const V discriminant = hn::NegMulAdd(A, C, hn::Mul(B, B));
+    const V inverseA = hn::Div(Const(1.0f), A);
+    const V root = hn::Sqrt(hn::Max(discriminant, hn::Zero(DF())));
+    const V first = hn::Max(hn::Min(beginX, endX), hn::Mul(hn::Neg(hn::Add(B, root)), inverseA));
+    const V last = hn::Min(hn::Max(beginX, endX), hn::Mul(hn::Sub(root, B), inverseA));
+    const auto some = hn::And(hn::Le(first, hn::Add(last, Const(2e-3f))), hn::Ge(discriminant, hn::Zero(DF())));
+    least = hn::IfThenElse(some, hn::Min(least, first), least);
+    most = hn::IfThenElse(some, hn::Max(most, last), most);
+    begin = end;
+    beginX = endX;
+  }
+  const V slack = hn::Add(reach.RowSpread, Const(1e-3f));
+  low = hn::Max(low, hn::Sub(least, slack));
+  high = hn::Min(high, hn::Add(most, slack));
+}
 } // namespace HWY_NAMESPACE
 } // namespace steerable
 HWY_AFTER_NAMESPACE();

@@ -161,6 +161,21 @@ struct SurfletSums
     HWY_ALIGN float Values[4 + N + Across][Lanes];
   };
 
+  STAGE_INLINE SurfletSums()
+    : Noise(hn::Zero(DF()))
+    , Weight(hn::Zero(DF()))
+    , Variance(hn::Zero(DF()))
+    , AcrossVariance(hn::Zero(DF()))
+  {
+    for (V& sum : this->AlongFlow)
+    {
+      sum = hn::Zero(DF());
+    }
+    for (V& sum : this->AcrossFlow)
+    {
+      sum = hn::Zero(DF());
+    }
+  }
   STAGE_INLINE explicit SurfletSums(const Stored& from)
     : Noise(hn::Load(DF(), from.Values[0]))
     , Weight(hn::Load(DF(), from.Values[1]))

@@ -25,6 +25,8 @@ struct Extent
   bool Tapers;
 };
 
+constexpr std::size_t TileRegisters = std::min<std::size_t>(32, TileSamples / Lanes);
+
 /**
  * The registers of samples that are evaluated together. A register is a rectangle of samples: in images of
  * LaneRows rows, of points all in a row. Columns and rows count within the tile.

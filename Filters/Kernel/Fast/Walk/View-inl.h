@@ -16,28 +16,6 @@ namespace steerable
 {
 namespace HWY_NAMESPACE
 {
-/// Axes across the flow: in 2D the normal (-u_y, u_x), in 3D those of space.
-template <int N>
-constexpr int AxesAcross = N == 2 ? 1 : N;
-
-/// A vector across u on these axes.
-template <int N>
-STAGE_INLINE void ToAcross(const V (&v)[N], const V (&u)[N], V (&across)[AxesAcross<N>])
-{
-  if constexpr (N == 2)
-  {
-    across[0] = hn::MulSub(u[0], v[1], hn::Mul(u[1], v[0]));
-  }
-  else
-  {
-    const V along = Dot(v, u);
-    for (int axis = 0; axis < N; ++axis)
-    {
-      across[axis] = hn::NegMulAdd(along, u[axis], v[axis]);
-    }
-  }
-}
-
 /// Registers that share a list, as a group; what a corner needs of it to find out which it reaches.
 template <int N>
 struct Span
@@ -209,10 +187,10 @@ STAGE_INLINE View<N> GetView(const Walk& walk, const Span<N>& span, const V (&co
 /// For each register of the span bits of the corners on the list that reach its samples.
 template <int N, class Walk>
 STAGE_INLINE void SetReaching(const Walk& walk, const Span<N>& span, const CornerList<N>& list,
-  std::uint64_t (&reaching)[TileRegisters])
+  ListBits (&reaching)[TileRegisters])
 {
   const bool all = !walk.Params.AnisotropicWeight;
-  std::fill_n(reaching, TileRegisters, 0);
+  std::fill_n(reaching[0], TileRegisters * ListWords, 0);
   for (std::size_t i = 0; i < list.Count; i += Lanes)
   {
     const auto listed = hn::FirstN(DF(), list.Count - i);
@@ -225,7 +203,7 @@ STAGE_INLINE void SetReaching(const Walk& walk, const Span<N>& span, const Corne
     for (std::size_t r = span.Begin; r < span.End; ++r)
     {
       const auto near = test.IsNear(span.Lambda[r], span.Mu[r]);
-      reaching[r] |= ToBits(all ? listed : hn::And(listed, near)) << i;
+      reaching[r][i / 64] |= ToBits(all ? listed : hn::And(listed, near)) << (i % 64);
     }
   }
 }

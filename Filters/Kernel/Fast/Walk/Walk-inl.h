@@ -39,20 +39,71 @@ public:
   {
     this->Visited = 0;
     this->Samples = &tile;
-    std::fill_n(this->Total[0].Values[0],
-      tile.Registers * sizeof(typename SurfletSums<N>::Stored) / sizeof(float), 0.0f);
-    this->AddSpan(0, tile.Registers);
+    this->Started = 0;
+    // Neighbouring tiles are alike: begin with spans that were small enough for the last one, and after one
+    // with room to spare with larger ones.
+    this->Splits = 0;
+    this->Widest = 0.0f;
+    this->AddParts(0, tile.Registers, this->Parts);
+    if (this->Splits > 0)
+    {
+      this->Parts = std::min(2 * this->Parts, TileRegisters);
+    }
+    else if (this->Widest < 0.4f * LargestSpread)
+    {
+      this->Parts = std::max<std::size_t>(1, this->Parts / 2);
+    }
     return this->Visited;
   }
 
   STAGE_INLINE V GetNoise(std::size_t r) const
   {
     return Normalized(this->Setup.Setup, N,
-      GetSums<N>(this->Setup, this->Samples->First[r], SurfletSums<N>(this->Total[r])));
+      GetSums<N>(this->Setup, this->Samples->First[r], this->GetTotal(r)));
   }
 
 private:
   // ---- which registers share a list -------------------------------------------------------------
+
+  STAGE_INLINE SurfletSums<N> GetTotal(std::size_t r) const
+  {
+    return (this->Started >> r & 1) != 0 ? SurfletSums<N>(this->Total[r]) : SurfletSums<N>();
+  }
+  STAGE_INLINE void SetTotal(std::size_t r, const SurfletSums<N>& sums)
+  {
+    this->Started |= std::uint64_t(1) << r;
+    sums.Store(this->Total[r]);
+  }
+
+  /// Halves of registers, whole columns if there are several.
+  std::size_t GetMiddle(std::size_t begin, std::size_t end) const
+  {
+    const std::size_t perColumn = this->Samples->PerColumn;
+    const std::size_t unit = end - begin > perColumn ? perColumn : 1;
+    return begin + (end - begin + unit) / (2 * unit) * unit;
+  }
+
+  /// Registers [begin, end) as this many spans, a power of 2.
+  STAGE_INLINE void AddParts(std::size_t begin, std::size_t end, std::size_t parts)
+  {
+    std::size_t ends[TileRegisters + 1] = { begin, end };
+    std::size_t count = 1;
+    for (; count < parts; count *= 2)
+    {
+      for (std::size_t i = count; i > 0; --i)
+      {
+        ends[2 * i] = ends[i];
+        ends[2 * i - 1] = this->GetMiddle(ends[i - 1], ends[i]);
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      if (ends[i] < ends[i + 1])
+      {
+        this->AddSpan(ends[i], ends[i + 1]);
+      }
+    }
+  }
 
   /// Registers [begin, end): together if they are alike, else half by half.
   HWY_NOINLINE void AddSpan(std::size_t begin, std::size_t end)
@@ -67,9 +118,11 @@ private:
       FinishGroup(this->Setup, extent, group);
       const V row = this->Setup.IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
       const Reach<N> reach(group, extent, row);
-      if (hn::GetLane(reach.LargestWidth) - extent.HalfWidth < LargestSpread &&
+      const float wider = hn::GetLane(reach.LargestWidth) - extent.HalfWidth;
+      if (wider < LargestSpread &&
         hn::GetLane(reach.Spread) < LargestExtent)
       {
+        this->Widest = std::max(this->Widest, wider);
         this->AddTogether(
           Span<N>(*this->Samples, corners, begin, end, group, extent), reach, origin);
         return;
@@ -77,7 +130,8 @@ private:
     }
     if (end - begin > 1)
     {
-      const std::size_t middle = (begin + end) / 2;
+      ++this->Splits;
+      const std::size_t middle = this->GetMiddle(begin, end);
       this->AddSpan(begin, middle);
       this->AddSpan(middle, end);
     }
@@ -274,9 +328,9 @@ private:
         this->WithKind(
           [&](auto kind) HWY_ATTR
           {
-            SurfletSums<N> sums(this->Total[r]);
+            SurfletSums<N> sums = this->GetTotal(r);
             AddSurflet<decltype(kind)>(this->Setup, sample, described, sums);
-            sums.Store(this->Total[r]);
+            this->SetTotal(r, sums);
           });
         this->Visited += this->Samples->GetCount(r);
       }
@@ -306,11 +360,14 @@ private:
       }
       Put(this->Setup, Describe(this->Setup, offset, HashCorners(this->Setup, origin, corner)), list, i);
     }
-    std::uint64_t reaching[TileRegisters];
+    ListBits reaching[TileRegisters];
     SetReaching(this->Setup, span, list, reaching);
     for (std::size_t r = span.Begin; r < span.End; ++r)
     {
-      this->Visited += this->Samples->GetCount(r) * hwy::PopCount(reaching[r]);
+      for (std::uint64_t bits : reaching[r])
+      {
+        this->Visited += this->Samples->GetCount(r) * hwy::PopCount(bits);
+      }
       this->WithKind([&](auto kind) HWY_ATTR
         { this->template AddSurflets<decltype(kind)>(r, origin, list, reaching[r]); });
     }
@@ -364,21 +421,24 @@ private:
   /// Adds the corners whose bits are set to register `r`.
   template <class SurfletsKind>
   HWY_NOINLINE void AddSurflets(
-    std::size_t r, const VU (&origin)[N], const CornerList<N>& list, std::uint64_t bits)
+    std::size_t r, const VU (&origin)[N], const CornerList<N>& list, const ListBits& reaching)
   {
     const Sample<N> sample(
       this->Setup.Setup, this->Setup.Block, this->Samples->First[r], origin);
-    SurfletSums<N> sums(this->Total[r]);
-    for (; bits != 0; bits &= bits - 1)
+    SurfletSums<N> sums = this->GetTotal(r);
+    for (std::size_t word = 0; word < ListWords; ++word)
     {
-      const Corner<N> corner(list, hwy::Num0BitsBelowLS1Bit_Nonzero64(bits));
-      AddSurflet<SurfletsKind>(this->Setup, sample, corner, sums);
+      for (std::uint64_t bits = reaching[word]; bits != 0; bits &= bits - 1)
+      {
+        const std::size_t i = 64 * word + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
+        AddSurflet<SurfletsKind>(this->Setup, sample, Corner<N>(list, i), sums);
+      }
     }
-    sums.Store(this->Total[r]);
+    this->SetTotal(r, sums);
   }
 
   /// Samples that are farther apart than this, as their surflets see it, do not share a list.
-  static constexpr float LargestSpread = 1.5f;
+  static constexpr float LargestSpread = N == 2 ? 2.5f : 1.5f;
 
   /// Nor do samples this many cells from their middle: distances of corners must keep their precision.
   static constexpr float LargestExtent = 16.0f;
@@ -386,6 +446,12 @@ private:
   const WalkSetup<N, Kind> Setup;
   const Tile* Samples = nullptr;
   std::uint64_t Visited = 0;
+  /// Spans that a tile begins with, how often spans were split, and by how much the widest is wider than a surflet.
+  std::size_t Parts = 1;
+  std::size_t Splits = 0;
+  float Widest = 0.0f;
+  /// A bit for each register that any corner was added to.
+  std::uint64_t Started = 0;
   typename SurfletSums<N>::Stored Total[TileRegisters];
 };
 } // namespace HWY_NAMESPACE

@@ -131,8 +131,10 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
   const bool unweighted = gradients && p.Interpolant != Fade::Wide && !p.AnisotropicWeight;
   setup.Biaxial = dimension == 3 && (field.Tensors || field.Metrics || field.Normals);
   setup.Curved = curved;
-  setup.SingleCell = p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial &&
-    !curved && p.Normalize == Normalization::None;
+  setup.Ball = plain && !curved && !p.LatticeWindow && p.Strength == 0.0 && (!field.Shapes || field.Isotropic) &&
+    !field.Metrics;
+  setup.SingleCell = setup.Ball || (p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial &&
+    !curved && p.Normalize == Normalization::None);
   setup.Uniform = setup.SingleCell && (!field.Shapes || field.Isotropic) && p.StrengthBy == StrengthMode::Constant &&
     !(p.MaskThreshold > 0.0) && p.Octaves == 1 && !p.Turbulence;
   setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;

@@ -299,6 +299,48 @@ STAGE_INLINE V SumOverCell(
   }
 }
 
+/// Where the metric is I: the sum over the corners of the cell, which no ball of radius 1 goes beyond.
+template <int N, bool Squares, class Corners>
+STAGE_INLINE Sums SumOverBalls(const V (&f)[N], Corners& corners)
+{
+  const V one = Const(1.0f);
+  // From the sample to the corners below and above, and its square.
+  V v[N][2];
+  V v2[N][2];
+  for (int axis = 0; axis < N; ++axis)
+  {
+    v[axis][0] = hn::Neg(f[axis]);
+    v[axis][1] = hn::Sub(one, f[axis]);
+    v2[axis][0] = hn::Mul(v[axis][0], v[axis][0]);
+    v2[axis][1] = hn::Mul(v[axis][1], v[axis][1]);
+  }
+  Sums sums;
+  for (int row = 0; row < 1 << (N - 1); ++row)
+  {
+    const int oy = row % 2;
+    const int oz = row / 2;
+    corners.SelectRow(oy, oz);
+    for (int ox = 0; ox < 2; ++ox)
+    {
+      V at[N] = { v[0][ox], v[1][oy] };
+      V q = hn::Add(v2[0][ox], v2[1][oy]);
+      if constexpr (N == 3)
+      {
+        at[2] = v[2][oz];
+        q = hn::Add(q, v2[2][oz]);
+      }
+      const V weight = QuinticFade(q);
+      sums.Noise = hn::MulAdd(weight, corners.GetSlope(ox, at), sums.Noise);
+      sums.Weight = hn::Add(sums.Weight, weight);
+      if constexpr (Squares)
+      {
+        sums.Variance = hn::MulAdd(hn::Mul(weight, weight), q, sums.Variance);
+      }
+    }
+  }
+  return sums;
+}
+
 /**
  * The same for Quality 0 without extensions; `getPlaces` also gives the windows of the lower corners.
  * `direct`: where the noise goes if all is uniform, see NoiseSetup; else null.
@@ -312,6 +354,7 @@ STAGE_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, M
   const V along = AtStrength(range.Along, strength);
   const V across = AtStrength(range.Across, strength);
   const bool weighted = setup.Parameters.AnisotropicWeight;
+  const bool squares = setup.Parameters.Normalize == Normalization::UnitVariance;
   const bool metric = weighted || setup.Parameters.MetricInProjection;
   for (std::size_t i = 0; i < count; i += Lanes)
   {
@@ -327,7 +370,11 @@ STAGE_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, M
     const V one = Const(1.0f);
     const V k = !metric ? one : direct ? along : Load(block.Along + i);
     const V b = !metric ? one : direct ? across : Load(block.Across + i);
-    const V noise = weighted
+    const V noise = setup.Ball
+      ? Normalized(setup, N,
+          squares ? SumOverBalls<N, true>(places.Fraction, corners)
+                  : SumOverBalls<N, false>(places.Fraction, corners))
+      : weighted
       ? SumOverCell<N, true>(u, k, b, places.Fraction, near, corners)
       : SumOverCell<N, false>(u, k, b, places.Fraction, near, corners);
     if (!direct)

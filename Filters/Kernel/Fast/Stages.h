@@ -63,8 +63,10 @@ struct NoiseSetup
   float Support;
   /// Only what the fast loops know: gradients on the square lattice, still, quintic and separable.
   bool Variant;
-  /// Nothing but the 2^N corners of the cell and no sums: Rice's Quality 0, and Perlin's noise.
+  /// Nothing but the 2^N corners of the cell: Rice's Quality 0 without sums, Perlin's noise, and balls.
   bool SingleCell;
+  /// The metric is I everywhere, and no window: a surflet is a ball of radius 1 around its corner.
+  bool Ball;
   /// The same with one strength for all vectors, and nothing to do with the sum but to hand it out.
   bool Uniform;
   /// 0: a sample belongs to the corner below it. 1/2: to the nearest one, from which its distance has a

@@ -220,7 +220,7 @@ HWY_INLINE V StreakProfile(V sigma)
 }
 
 /// Cells come wrapped, so few steps bring an index near them back into [0, period).
-HWY_NOINLINE VU WrapIndex(VU index, std::int64_t period)
+inline HWY_NOINLINE VU WrapIndex(VU index, std::int64_t period)
 {
   const VI cells = hn::Set(DI(), static_cast<std::int32_t>(period));
   VI i = hn::BitCast(DI(), index);

@@ -166,6 +166,7 @@ HWY_NOINLINE void WalkPatch(const NoiseSetup& setup, const OctaveSetup& octave, 
   Walk<N, Kind> walk(setup, octave, block);
   Tile tile(RowsOfRegisters(rows) / LaneRows, LaneColumns);
   constexpr std::size_t tileColumns = TileRegisters * Lanes / PatchRows;
+  static_assert(tileColumns % Lanes == 0 || LaneRows == 1, "Tiles begin where PairRows exchanges halves.");
   for (std::size_t i = 0; i < columns; i += tileColumns)
   {
     const std::size_t end = std::min(columns, i + tileColumns);

@@ -11,6 +11,7 @@
 #include "Fast/Registers-inl.h"
 #include "LatticeHash.h"
 #include "NoiseParameters.h"
+#include "Surflet.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace steerable
@@ -33,6 +34,15 @@ HWY_INLINE V QuinticFade(V t)
 {
   V inner;
   const V r = QuinticFactors(t, inner);
+  return hn::Mul(hn::Mul(hn::Mul(r, r), r), inner);
+}
+
+/// The same at 1 - r, of an r that was not rounded as 1 - t would be.
+HWY_INLINE V QuinticFadeOfRest(V r)
+{
+  r = hn::Max(r, hn::Zero(DF()));
+  const V t = hn::Sub(Const(1.0f), r);
+  const V inner = hn::MulAdd(hn::MulAdd(Const(6.0f), t, Const(3.0f)), t, Const(1.0f));
   return hn::Mul(hn::Mul(hn::Mul(r, r), r), inner);
 }
 
@@ -215,7 +225,7 @@ HWY_INLINE void PerlinGradient(VU hash, V (&g)[N])
 HWY_INLINE V StreakProfile(V sigma)
 {
   const V ramp = hn::MulAdd(sigma, Const(0.5f), Const(0.5f));
-  const V end = hn::Min(hn::Mul(hn::Sub(Const(1.0f), sigma), Const(1.0f / 0.15f)), Const(1.0f));
+  const V end = hn::Min(hn::Mul(hn::Sub(Const(1.0f), sigma), Const(1.0f / static_cast<float>(StreakEnd))), Const(1.0f));
   return hn::Max(hn::Mul(ramp, hn::Max(end, Const(0.0f))), Const(0.0f));
 }
 

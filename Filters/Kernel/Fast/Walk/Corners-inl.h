@@ -100,7 +100,7 @@ STAGE_INLINE Corner<N> Describe(const Walk& walk, const V (&offset)[N], VU hash)
       const V centered = hn::Sub(tau, Const(0.5f));
       corner.Travel = hn::Mul(centered, Const(static_cast<float>(walk.Params.Speed)));
       const V wave = CosPi(centered); // sin(π τ)
-      corner.Amplitude = hn::Mul(hn::Mul(wave, wave), Const(1.6329931619f));
+      corner.Amplitude = hn::Mul(hn::Mul(wave, wave), Const(static_cast<float>(MotionAmplitude)));
     }
     if (walk.Params.Surflet == Basis::Streaks)
     {

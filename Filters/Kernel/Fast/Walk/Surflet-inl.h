@@ -303,12 +303,12 @@ STAGE_INLINE void GetAlongAndAcross(
   t = hn::Add(t, hn::MulAdd(low[0], offset[0], hn::MulSub(low[1], offset[1], sample.LowAcross)));
 }
 
-/// Weight of a plain surflet at q.
+/// Weight of a plain surflet; `rest`: 1 - q.
 template <int N, class Walk>
 STAGE_INLINE V GetPlainWeight(
-  const Walk& walk, const Sample<N>& sample, const Corner<N>& corner, V q)
+  const Walk& walk, const Sample<N>& sample, const Corner<N>& corner, V rest)
 {
-  V weight = QuinticFade(q);
+  V weight = QuinticFadeOfRest(rest);
   if constexpr (Walk::Windowed)
   {
     V v[N];
@@ -327,8 +327,9 @@ STAGE_INLINE void AddPlainSurflet(
   V s2;
   V t;
   GetAlongAndAcross<Kind::Curved>(sample, corner, s, s2, t);
-  const V q = hn::MulAdd(sample.Along, s2, hn::Mul(sample.Across, hn::Mul(t, t)));
-  const V weight = GetPlainWeight(walk, sample, corner, q);
+  const V rest =
+    hn::NegMulAdd(sample.Along, s2, hn::NegMulAdd(sample.Across, hn::Mul(t, t), Const(1.0f)));
+  const V weight = GetPlainWeight(walk, sample, corner, rest);
   const V along = hn::Mul(weight, s);
   const V across = hn::Mul(weight, t);
   for (int axis = 0; axis < 2; ++axis)
@@ -377,8 +378,8 @@ STAGE_INLINE void AddPlainSurflet(
     const V ks = hn::Mul(sample.Along, s);
     const V es = hn::Mul(sample.Second, second);
     const V bt = hn::Mul(sample.Across, third);
-    const V q = hn::MulAdd(ks, s, hn::MulAdd(bt, third, hn::Mul(es, second)));
-    weight = GetPlainWeight(walk, sample, corner, q);
+    weight = GetPlainWeight(walk, sample, corner,
+      hn::NegMulAdd(ks, s, hn::NegMulAdd(bt, third, hn::NegMulAdd(es, second, Const(1.0f)))));
     const V slope = hn::MulAdd(ks, Dot(sample.U, g),
       hn::MulAdd(bt, Dot(sample.ThirdAxis, g), hn::Mul(es, Dot(sample.M, g))));
     sums.Noise = hn::MulAdd(weight, slope, sums.Noise);
@@ -390,18 +391,35 @@ STAGE_INLINE void AddPlainSurflet(
   }
   else
   {
-    // As in the plane: the offset is exact, and of the sag, many cells, little is left.
-    const V s = hn::MulAdd(sample.U[2], offset[2],
-      hn::MulAdd(sample.U[1], offset[1], hn::MulSub(sample.U[0], offset[0], sample.AlongFraction)));
-    const V s2 = hn::Mul(s, s);
-    for (int i = 0; i < 3; ++i)
+    V s;
+    V s2;
+    if constexpr (Kind::Curved)
     {
-      t[i] = Kind::Curved ? hn::NegMulAdd(s2, sample.HalfBend[i], offset[i]) : offset[i];
-      t[i] = hn::Sub(hn::NegMulAdd(s, sample.U[i], t[i]), sample.Fraction[i]);
+      // As in the plane: the offset is exact, and of the sag, many cells, little is left.
+      s = hn::MulAdd(sample.U[2], offset[2],
+        hn::MulAdd(
+          sample.U[1], offset[1], hn::MulSub(sample.U[0], offset[0], sample.AlongFraction)));
+      s2 = hn::Mul(s, s);
+      for (int i = 0; i < 3; ++i)
+      {
+        t[i] = hn::NegMulAdd(s2, sample.HalfBend[i], offset[i]);
+        t[i] = hn::Sub(hn::NegMulAdd(s, sample.U[i], t[i]), sample.Fraction[i]);
+      }
+    }
+    else
+    {
+      V v[3];
+      GetOffset(sample, corner, v);
+      s = Dot(v, sample.U);
+      s2 = hn::Mul(s, s);
+      for (int i = 0; i < 3; ++i)
+      {
+        t[i] = hn::NegMulAdd(s, sample.U[i], v[i]);
+      }
     }
     const V t2 = Dot(t, t);
-    weight = GetPlainWeight(
-      walk, sample, corner, hn::MulAdd(sample.Along, s2, hn::Mul(sample.Across, t2)));
+    weight = GetPlainWeight(walk, sample, corner,
+      hn::NegMulAdd(sample.Along, s2, hn::NegMulAdd(sample.Across, t2, Const(1.0f))));
     // s is rounded and u has not quite length 1: what t still has of u is large beside it. It does
     // not change t² but g . t.
     const V rest = Dot(t, sample.U);

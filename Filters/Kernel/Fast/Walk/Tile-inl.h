@@ -25,7 +25,8 @@ struct Extent
   bool Tapers;
 };
 
-constexpr std::size_t TileRegisters = std::min<std::size_t>(32, TileSamples / Lanes);
+constexpr std::size_t TileRegisters =
+  std::min<std::size_t>(32, std::max<std::size_t>(8, TileSamples / Lanes));
 
 /**
  * The registers of samples that are evaluated together. A register is a rectangle of samples: in images of

@@ -131,11 +131,14 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
   const bool unweighted = gradients && p.Interpolant != Fade::Wide && !p.AnisotropicWeight;
   setup.Biaxial = dimension == 3 && (field.Tensors || field.Metrics || field.Normals);
   setup.Curved = curved;
-  setup.Ball = plain && !curved && !p.LatticeWindow && p.Strength == 0.0 && (!field.Shapes || field.Isotropic) &&
-    !field.Metrics;
-  setup.SingleCell = setup.Ball || (p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial &&
-    !curved && p.Normalize == Normalization::None);
-  setup.Uniform = setup.SingleCell && (!field.Shapes || field.Isotropic) && p.StrengthBy == StrengthMode::Constant &&
+  const bool shaped = field.Shapes && !field.Isotropic;
+  setup.Ball =
+    plain && !curved && !p.LatticeWindow && p.Strength == 0.0 && !shaped && !field.Metrics;
+  setup.SingleCell = setup.Ball ||
+    (p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial && !curved &&
+      p.Normalize == Normalization::None);
+  setup.Uniform = setup.SingleCell && !setup.Biaxial && !shaped &&
+    p.StrengthBy == StrengthMode::Constant &&
     !(p.MaskThreshold > 0.0) && p.Octaves == 1 && !p.Turbulence;
   setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;
   const bool jittered = p.Grid == Lattice::Jittered;

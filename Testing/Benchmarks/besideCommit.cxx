@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Times two builds of the kernel in turns: besideCommit EARLIER.so NOW.so [REPETITIONS]. See Utilities/besideCommit.sh.
+/// Times two builds of the kernel in turns: besideCommit EARLIER.so NOW.so [REPETITIONS]. See
+/// Utilities/besideCommit.sh.
 #include <dlfcn.h>
 
 #include <algorithm>

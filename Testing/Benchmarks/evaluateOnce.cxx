@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * One evaluation at one SIMD level, for counting its instructions with callgrind:
- * evaluateOnce LEVEL 2|3 image|points QUALITY KIND. Prints the number of points. KIND plain is the
- * paper's model without normalisation and curvature, paper with both; the defaults have no Quality, and neither have
- * straight, the defaults in a constant flow, and isotropic, the defaults with Strength 0 and without curvature.
+ * One evaluation at one SIMD level, for counting its instructions with callgrind: evaluateOnce
+ * LEVEL 2|3 image|points QUALITY KIND. Prints the number of points. KIND plain is the paper's model
+ * without normalisation and curvature, paper with both; the defaults have no Quality, and neither
+ * have straight, the defaults in a constant flow, and isotropic, the defaults with Strength 0 and
+ * without curvature.
  */
 #include "SteerableNoise.h"
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// One evaluation with the default look, as a module that besideCommit loads: one for each build of the kernel.
+/// One evaluation with the default look, as a module that besideCommit loads: one for each build of
+/// the kernel.
 #include "SteerableNoise.h"
 
 #include <hwy/targets.h>
@@ -12,7 +13,8 @@
 
 using namespace steerable;
 
-/// Seconds of the thread for one evaluation; `points` in the order of the image. 0 if there is no such level.
+/// Seconds of the thread for one evaluation; `points` in the order of the image. 0 if there is no
+/// such level.
 extern "C" __attribute__((visibility("default"))) double TimeKernel(
   const char* level, int dimension, int points)
 {

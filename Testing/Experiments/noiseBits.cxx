@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * A checksum of the kernel's noise for many options, on images and points in 2D and 3D, at one SIMD
- * level: noiseBits LEVEL [FILE]. A change that is not to change results prints the same lines before and after. FILE gets
- * the values themselves, to see how far they are apart.
+ * level: noiseBits LEVEL [FILE]. A change that is not to change results prints the same lines
+ * before and after. FILE gets the values themselves, to see how far they are apart.
  */
 #include "KernelTestHelpers.h"
 

@@ -171,7 +171,7 @@ testing::StageErrors CheckReachApart(unsigned seed)
   for (std::size_t lane = 0; lane < Lanes; ++lane)
   {
     ForBox<N>(9,
-      [&](const std::array<int, 3>& corner)
+      [&](const std::array<int, 3>& corner) HWY_ATTR
       {
         std::array<int, 3> own = corner; // rows count from each sample's own cell
         for (int axis = 0; axis < N; ++axis)
@@ -196,7 +196,8 @@ testing::StageErrors CheckReachApart(unsigned seed)
   return errors;
 }
 
-/// Corners within q < 1 of samples of a span that are not on its rows, are sifted out, or are not seen.
+/// Corners within q < 1 of samples of a span that are not on its rows, are sifted out, or are not
+/// seen.
 template <int N>
 testing::StageErrors CheckSpan(unsigned seed)
 {
@@ -215,7 +216,7 @@ testing::StageErrors CheckSpan(unsigned seed)
   HWY_ALIGN float lows[Lanes];
   HWY_ALIGN float highs[Lanes];
   ForBox<N>(10,
-    [&](const std::array<int, 3>& corner)
+    [&](const std::array<int, 3>& corner) HWY_ATTR
     {
       bool any = false;
       for (std::size_t i = 0; i < end * Lanes; ++i)
@@ -309,7 +310,7 @@ testing::StageErrors CheckSurflet(unsigned seed)
   SurfletSums<N> sums;
   std::vector<std::array<double, 2>> expected(Lanes, { 0.0, 0.0 });
   ForBox<N>(9,
-    [&](const std::array<int, 3>& corner)
+    [&](const std::array<int, 3>& corner) HWY_ATTR
     {
       VI index[N];
       V offset[N];

@@ -20,8 +20,8 @@ namespace steerable
 {
 namespace HWY_NAMESPACE
 {
-/// Where the samples of a register are in the lattice of an octave: cells as the hash takes them, and
-/// fractions from their corners.
+/// Where the samples of a register are in the lattice of an octave: cells as the hash takes them,
+/// and fractions from their corners.
 template <int N>
 struct Places
 {
@@ -29,7 +29,8 @@ struct Places
   V Fraction[N];
 };
 
-/// Gradients of the lattice rows on both sides of a row of pixels, hashed once and kept while they serve.
+/// Gradients of the lattice rows on both sides of a row of pixels, hashed once and kept while they
+/// serve.
 template <int N>
 class GradientRows
 {
@@ -217,9 +218,9 @@ HWY_INLINE V CellWindow(Fade fade, V fraction)
 }
 
 /**
- * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix. `near` is
- * the window of the corner below on each axis; that of the one above is 1 less it. `Weighted`:
- * faded by the metric.
+ * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix.
+ * `near` is the window of the corner below on each axis; that of the one above is 1 less it.
+ * `Weighted`: faded by the metric.
  */
 template <int N, bool Weighted, class Corners>
 STAGE_INLINE V SumOverCell(
@@ -237,8 +238,8 @@ STAGE_INLINE V SumOverCell(
       G[j][i] = G[i][j];
     }
   }
-  // G v and q = v G v at the first corner. A step along an axis adds a column of G to the one, and the
-  // sum of that component before and after to the other.
+  // G v and q = v G v at the first corner. A step along an axis adds a column of G to the one, and
+  // the sum of that component before and after to the other.
   V Gv[N];
   for (int i = 0; i < N; ++i)
   {
@@ -299,7 +300,8 @@ STAGE_INLINE V SumOverCell(
   }
 }
 
-/// Where the metric is I: the sum over the corners of the cell, which no ball of radius 1 goes beyond.
+/// Where the metric is I: the sum over the corners of the cell, which no ball of radius 1 goes
+/// beyond.
 template <int N, bool Squares, class Corners>
 STAGE_INLINE Sums SumOverBalls(const V (&f)[N], Corners& corners)
 {
@@ -342,8 +344,8 @@ STAGE_INLINE Sums SumOverBalls(const V (&f)[N], Corners& corners)
 }
 
 /**
- * The same for Quality 0 without extensions; `getPlaces` also gives the windows of the lower corners.
- * `direct`: where the noise goes if all is uniform, see NoiseSetup; else null.
+ * The same for Quality 0 without extensions; `getPlaces` also gives the windows of the lower
+ * corners. `direct`: where the noise goes if all is uniform, see NoiseSetup; else null.
  */
 template <int N, class Corners, class GetPlaces>
 STAGE_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,

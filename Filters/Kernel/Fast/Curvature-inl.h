@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// How streamlines bend: from differences in images or as the host gives it, and what metrics become by it.
+/// How streamlines bend: from differences in images or as the host gives it, and what metrics
+/// become by it.
 #if defined(STEERABLE_FAST_CURVATURE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STEERABLE_FAST_CURVATURE_INL_H
 #undef STEERABLE_FAST_CURVATURE_INL_H
@@ -46,7 +47,8 @@ HWY_INLINE V DifferenceOfProducts(V a, V b, V c, V d)
 #endif
 }
 
-/// Samples of an image that go through the stages together: rows of one slice, the first from this on.
+/// Samples of an image that go through the stages together: rows of one slice, the first from this
+/// on.
 struct Patch
 {
   std::int64_t First[3];
@@ -58,8 +60,9 @@ struct Patch
 };
 
 /**
- * Adds u_axis ∂u/∂axis to the bend, the neighbours turned to the side of the middle one; a neighbour without a
- * direction stands for no change. Rows are unit vectors, in 2D vectors and 1/length.
+ * Adds u_axis ∂u/∂axis to the bend, the neighbours turned to the side of the middle one; a
+ * neighbour without a direction stands for no change. Rows are unit vectors, in 2D vectors and
+ * 1/length.
  */
 template <int N>
 HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t at, std::size_t count, int axis,
@@ -84,8 +87,8 @@ HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t at, std::size_t co
     V change[N];
     if constexpr (N == 2)
     {
-      // Only the part across u counts. Differences of unit vectors would lose it to rounding where samples
-      // are close together.
+      // Only the part across u counts. Differences of unit vectors would lose it to rounding where
+      // samples are close together.
       const V acrossA = hn::Xor(DifferenceOfProducts(u[0], a[1], u[1], a[0]), signA);
       const V acrossC = hn::Xor(DifferenceOfProducts(u[0], c[1], u[1], c[0]), signC);
       const V inverse = Load(own[2] + i);

@@ -19,8 +19,8 @@ namespace steerable
 namespace HWY_NAMESPACE
 {
 /**
- * Place of sample `index` of a grid axis, in cells of an octave; 0 where a double no longer tells one
- * cell from the next.
+ * Place of sample `index` of a grid axis, in cells of an octave; 0 where a double no longer tells
+ * one cell from the next.
  */
 inline double CellPlace(const ImageGrid& grid, int axis, std::int64_t index, double cellsPerUnit)
 {
@@ -92,9 +92,9 @@ inline std::size_t RowsOfRegisters(std::size_t rows)
 }
 
 /**
- * Exchanges halves of registers between the two rows of each pair, so that each holds samples of both: the
- * first LaneColumns of either, then the next. Where there is no second row the first stands for it. Twice
- * done, all is as it was.
+ * Exchanges halves of registers between the two rows of each pair, so that each holds samples of
+ * both: the first LaneColumns of either, then the next. Where there is no second row the first
+ * stands for it. Twice done, all is as it was.
  */
 HWY_NOINLINE void PairRows(float* array, std::size_t rows, std::size_t columns)
 {
@@ -166,7 +166,8 @@ HWY_NOINLINE void WalkPatch(const NoiseSetup& setup, const OctaveSetup& octave, 
   Walk<N, Kind> walk(setup, octave, block);
   Tile tile(RowsOfRegisters(rows) / LaneRows, LaneColumns);
   constexpr std::size_t tileColumns = TileRegisters * Lanes / PatchRows;
-  static_assert(tileColumns % Lanes == 0 || LaneRows == 1, "Tiles begin where PairRows exchanges halves.");
+  static_assert(
+    tileColumns % Lanes == 0 || LaneRows == 1, "Tiles begin where PairRows exchanges halves.");
   for (std::size_t i = 0; i < columns; i += tileColumns)
   {
     const std::size_t end = std::min(columns, i + tileColumns);

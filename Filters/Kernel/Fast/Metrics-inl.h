@@ -30,8 +30,8 @@ HWY_INLINE V AtStrength(double eigenvalue, V strength)
 }
 
 /**
- * v times 1/|v|, which is known up to rounding: the nearest floats, and what they lack. In double, with
- * one step of Newton: a length that is off shows as much as an eigenvalue that is.
+ * v times 1/|v|, which is known up to rounding: the nearest floats, and what they lack. In double,
+ * with one step of Newton: a length that is off shows as much as an eigenvalue that is.
  */
 HWY_INLINE void SplitUnit(
   const V (&v)[3], V inverse, float* const (&unit)[2], float* const (&rest)[2])
@@ -64,13 +64,15 @@ enum class Wanted
   Units,
   /// With lengths, and in 2D, if there is room for it, what the units lack.
   Metrics,
-  /// 2D: the vectors as they are, unless they are too long or too short to be squared, and 1/length.
+  /// 2D: the vectors as they are, unless they are too long or too short to be squared, and
+  /// 1/length.
   Inverses
 };
 
 /**
- * Directions of `count` tuples of 3 floats, 0 where there is none. In 2D they lie in the plane, and the third
- * component counts for the length alone. Returns whether all of them have a direction beyond doubt.
+ * Directions of `count` tuples of 3 floats, 0 where there is none. In 2D they lie in the plane, and
+ * the third component counts for the length alone. Returns whether all of them have a direction
+ * beyond doubt.
  */
 template <int N, Wanted What>
 HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* const (&unit)[3],
@@ -101,8 +103,8 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
     {
       length2 = whole2;
     }
-    // NaN fails the comparisons; what squares to too much or too little, or is next to nothing in the plane, is
-    // looked at again.
+    // NaN fails the comparisons; what squares to too much or too little, or is next to nothing in
+    // the plane, is looked at again.
     constexpr auto least = static_cast<float>(2.0 * SmallestInPlane * SmallestInPlane);
     const V smallest = hn::Max(Const(1e-30f), hn::Mul(whole2, Const(least)));
     const auto good = hn::And(hn::Gt(length2, smallest), hn::Lt(whole2, Const(1e30f)));
@@ -359,7 +361,8 @@ void MetricsOfTensors(const NoiseSetup& setup, const Value* tuples, const float*
   }
 }
 
-/// Directions along the flow of samples [first, first + count), as AddDerivative takes them; 0 where there is none.
+/// Directions along the flow of samples [first, first + count), as AddDerivative takes them; 0
+/// where there is none.
 template <int N>
 void Directions(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t count,
   MetricBlock& block, float* const (&row)[3])
@@ -409,8 +412,8 @@ inline void MetricsOfNothing(std::size_t at, std::size_t count, MetricBlock& blo
   }
 }
 
-/// Axes and eigenvalues from `at` on, once the bend is known. True: all have a direction and the same
-/// strength, and none of their eigenvalues are written.
+/// Axes and eigenvalues from `at` on, once the bend is known. True: all have a direction and the
+/// same strength, and none of their eigenvalues are written.
 template <int N>
 bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t at,
   std::size_t count, MetricBlock& block, std::uint64_t& bounded)

@@ -17,8 +17,8 @@ namespace steerable
 {
 namespace HWY_NAMESPACE
 {
-/// Cells and fractions of samples from `at` on: floor and difference in double, the rest in float. `Plain`: on
-/// the square lattice, without periods and without rounding of cells.
+/// Cells and fractions of samples from `at` on: floor and difference in double, the rest in float.
+/// `Plain`: on the square lattice, without periods and without rounding of cells.
 template <int N, bool Plain>
 HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octave,
   const double* positions, std::size_t at, std::size_t count, MetricBlock& block)

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Parts of a surflet, as Surflet.h and LatticeHash.h have them: fades and profiles, hashes, gradients.
+/// Parts of a surflet, as Surflet.h and LatticeHash.h have them: fades and profiles, hashes,
+/// gradients.
 #if defined(STEERABLE_FAST_PROFILE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STEERABLE_FAST_PROFILE_INL_H
 #undef STEERABLE_FAST_PROFILE_INL_H
@@ -19,9 +20,9 @@ namespace steerable
 namespace HWY_NAMESPACE
 {
 /**
- * Kensler's quintic for t >= 0, exactly 0 from t = 1 on. With r = 1 - t it is r³ (6t² + 3t + 1), which
- * keeps its relative precision where it is small: normalisation would show what is lost there. Here r and
- * the other factor.
+ * Kensler's quintic for t >= 0, exactly 0 from t = 1 on. With r = 1 - t it is r³ (6t² + 3t + 1),
+ * which keeps its relative precision where it is small: normalisation would show what is lost
+ * there. Here r and the other factor.
  */
 HWY_INLINE V QuinticFactors(V t, V& inner)
 {
@@ -55,7 +56,8 @@ HWY_INLINE V QuinticFades(V t, V u)
   return hn::Mul(hn::Mul(hn::Mul(r, r), r), hn::Mul(inner, other));
 }
 
-/// The same with its absolute precision only, two operations less: enough for a sum that nothing divides.
+/// The same with its absolute precision only, two operations less: enough for a sum that nothing
+/// divides.
 HWY_INLINE V PlainQuinticFade(V t)
 {
   t = hn::Min(t, Const(1.0f));
@@ -142,7 +144,8 @@ HWY_INLINE V UniformSign(VU hash)
   return hn::BitCast(DF(), hn::And(hash, hn::Set(DU(), 0x80000000u)));
 }
 
-/// Uniform gradient but for its sign: a direction in the plane, and in 3D what it is multiplied by, and the height.
+/// Uniform gradient but for its sign: a direction in the plane, and in 3D what it is multiplied by,
+/// and the height.
 HWY_INLINE void UniformTurn(VU hash, V& cosine, V& sine)
 {
   const V turn = HashToSigned(hn::ShiftLeft<1>(hash));
@@ -225,7 +228,9 @@ HWY_INLINE void PerlinGradient(VU hash, V (&g)[N])
 HWY_INLINE V StreakProfile(V sigma)
 {
   const V ramp = hn::MulAdd(sigma, Const(0.5f), Const(0.5f));
-  const V end = hn::Min(hn::Mul(hn::Sub(Const(1.0f), sigma), Const(1.0f / static_cast<float>(StreakEnd))), Const(1.0f));
+  const V one = Const(1.0f);
+  const V perEnd = Const(1.0f / static_cast<float>(StreakEnd));
+  const V end = hn::Min(hn::Mul(hn::Sub(one, sigma), perEnd), one);
   return hn::Max(hn::Mul(ramp, hn::Max(end, Const(0.0f))), Const(0.0f));
 }
 

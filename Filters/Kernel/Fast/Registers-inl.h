@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Registers of samples or of corners and what every stage does with them. This file and the others of the
- * fast path are compiled once for each SIMD level: SteerableNoise.cxx includes them inside Highway's
- * per-target pass, hence the guards that let each in once per pass.
+ * Registers of samples or of corners and what every stage does with them. This file and the others
+ * of the fast path are compiled once for each SIMD level: SteerableNoise.cxx includes them inside
+ * Highway's per-target pass, hence the guards that let each in once per pass.
  *
  * A register holds one number of several samples. Every lane follows the same arithmetic whatever
  * its neighbours are: corners that only another lane needs add exactly 0.
@@ -69,7 +69,8 @@ HWY_INLINE V Dot(const V (&a)[N], const V (&b)[N])
   return sum;
 }
 
-/// The nearest multiple of 2^(-23) `size`, a power of two: sums of products of few digits are exact.
+/// The nearest multiple of 2^(-23) `size`, a power of two: sums of products of few digits are
+/// exact.
 HWY_INLINE V RoundTo(V v, float size)
 {
   const V shift = Const(1.5f * size);

@@ -31,7 +31,8 @@ struct Sums
   V Variance;
 };
 
-/// Variance of what a surflet is multiplied by: a gradient's component, a value, or whether there is one.
+/// Variance of what a surflet is multiplied by: a gradient's component, a value, or whether there
+/// is one.
 inline float VarianceShare(const NoiseParameters& p, int dimension)
 {
   switch (p.Surflet)

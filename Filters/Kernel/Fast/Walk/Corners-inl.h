@@ -31,7 +31,8 @@ struct CornerList
   HWY_ALIGN std::int32_t Index[N][ListSize + 16];
   HWY_ALIGN float Offset[N][ListSize];
   HWY_ALIGN float Gradient[N][ListSize];
-  /// Of variants: displacement of the corner, (τ - 1/2) Speed, and what the surflet is multiplied by.
+  /// Of variants: displacement of the corner, (τ - 1/2) Speed, and what the surflet is multiplied
+  /// by.
   HWY_ALIGN float Jitter[N][ListSize];
   HWY_ALIGN float Travel[ListSize];
   HWY_ALIGN float Amplitude[ListSize];

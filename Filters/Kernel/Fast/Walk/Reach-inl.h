@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Which corners a tile, or a sample, can reach: intervals of lattice rows, and of corners on them. They are
- * never too small.
+ * Which corners a tile, or a sample, can reach: intervals of lattice rows, and of corners on them.
+ * They are never too small.
  */
 #if defined(STEERABLE_FAST_WALK_REACH_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STEERABLE_FAST_WALK_REACH_INL_H
@@ -24,7 +24,8 @@ STAGE_INLINE V Quadratic(const V (&coefficients)[3], V s)
   return hn::MulAdd(hn::MulAdd(coefficients[2], s, coefficients[1]), s, coefficients[0]);
 }
 
-/// Half-width of a surflet at |s| = `distance` and farther; beyond its end so negative that it stays so.
+/// Half-width of a surflet at |s| = `distance` and farther; beyond its end so negative that it
+/// stays so.
 STAGE_INLINE V GetTaper(V distance, V inverseLength, V halfWidth, bool tapers)
 {
   const V s = hn::Mul(hn::Max(distance, hn::Zero(DF())), inverseLength);
@@ -55,7 +56,8 @@ STAGE_INLINE void ToAcross(const V (&v)[N], const V (&u)[N], V (&across)[AxesAcr
   }
 }
 
-/// Where lattice rows are cut: the reach of registers together in all lanes, or that of a sample in each.
+/// Where lattice rows are cut: the reach of registers together in all lanes, or that of a sample in
+/// each.
 template <int N>
 struct Reach
 {
@@ -68,7 +70,8 @@ struct Reach
   V HalfWidth;
   V LargestWidth;
   V InverseLength;
-  /// Largest distance of a place from the middle; how far rows are continued for samples ahead on them.
+  /// Largest distance of a place from the middle; how far rows are continued for samples ahead on
+  /// them.
   V Spread;
   V RowSpread;
   /// What s can be off that of the middle; and t, by Across[0] + Across[1] |s| + Across[2] s².
@@ -85,8 +88,8 @@ struct Reach
   }
 
   /**
-   * All that a group reaches. Of its first step the part on a lattice row, as long as `row`, is either a
-   * step like others, or the row is continued by it.
+   * All that a group reaches. Of its first step the part on a lattice row, as long as `row`, is
+   * either a step like others, or the row is continued by it.
    */
   STAGE_INLINE Reach(const Group<N>& group, const Extent& extent, V row)
     : BendLength(group.BendLength)
@@ -192,7 +195,8 @@ struct IndexAxis
   V BoxHigh;
 };
 
-/// How much farther across a corner can stand before jitter moves it, the change of its sag included.
+/// How much farther across a corner can stand before jitter moves it, the change of its sag
+/// included.
 template <int N, class Walk>
 STAGE_INLINE V GetLooseness(const Walk& walk, const Reach<N>& reach)
 {
@@ -291,10 +295,11 @@ STAGE_INLINE void GetRange(const Walk& walk, const Reach<N>& reach, int number,
 }
 
 /**
- * Interval of a register of rows. The surflet is cut into sections along the flow. In each the parabola is
- * close to a line, so that what the ellipsoid around it leaves of the row is a quadratic's. With W the
- * half-width, L the half-length, and e and a what t and s can be off, |t| <= W √(1 - (|s| - a)²/L²) + e
- * implies, by (x + y)² <= (1 + d) x² + (1 + 1/d) y² with d = e/W and d = a/L,
+ * Interval of a register of rows. The surflet is cut into sections along the flow. In each the
+ * parabola is close to a line, so that what the ellipsoid around it leaves of the row is a
+ * quadratic's. With W the half-width, L the half-length, and e and a what t and s can be off, |t|
+ * <= W √(1 - (|s| - a)²/L²) + e implies, by (x + y)² <= (1 + d) x² + (1 + 1/d) y² with d = e/W and
+ * d = a/L,
  *
  *   t² + W (W + e) s² / (L (L + a)) <= (W + e)² + W (W + e) a / L.
  */
@@ -360,7 +365,8 @@ STAGE_INLINE void CutRows(
       // s²/2 is between m s - begin end/2 and (end - begin)²/8 less, m the middle.
       off = hn::MulAdd(offParabola, reach.BendLength, off);
       const V middle = hn::Mul(Const(0.5f), hn::Add(begin, end));
-      const V sag = hn::Sub(hn::MulSub(middle, s0, hn::Mul(Const(0.5f), hn::Mul(begin, end))), offParabola);
+      const V chord = hn::MulSub(middle, s0, hn::Mul(Const(0.5f), hn::Mul(begin, end)));
+      const V sag = hn::Sub(chord, offParabola);
       const V sagChange = hn::Mul(middle, se);
       for (int axis = 0; axis < AxesAcross<N>; ++axis)
       {
@@ -371,7 +377,8 @@ STAGE_INLINE void CutRows(
     const V width = hn::Add(reach.HalfWidth, off);
     const V both = hn::Mul(reach.HalfWidth, width);
     const V taper = hn::Mul(both, tapers);
-    const V limit = hn::MulAdd(both, reach.Tapers ? overLength : hn::Zero(DF()), hn::Mul(width, width));
+    const V limit =
+      hn::MulAdd(both, reach.Tapers ? overLength : hn::Zero(DF()), hn::Mul(width, width));
     // A row along a streak that does not taper: what the clamped coefficient adds must not count.
     V A = hn::MulAdd(hn::Mul(taper, se), se, Dot(change, change));
     const V B = hn::MulAdd(hn::Mul(taper, s0), se, Dot(t, change));
@@ -387,7 +394,8 @@ STAGE_INLINE void CutRows(
     const V root = hn::Sqrt(hn::Max(discriminant, hn::Zero(DF())));
     const V first = hn::Max(hn::Min(beginX, endX), hn::Mul(hn::Neg(hn::Add(B, root)), inverseA));
     const V last = hn::Min(hn::Max(beginX, endX), hn::Mul(hn::Sub(root, B), inverseA));
-    const auto some = hn::And(hn::Le(first, hn::Add(last, Const(2e-3f))), hn::Ge(discriminant, hn::Zero(DF())));
+    const auto some = hn::And(
+      hn::Le(first, hn::Add(last, Const(2e-3f))), hn::Ge(discriminant, hn::Zero(DF())));
     least = hn::IfThenElse(some, hn::Min(least, first), least);
     most = hn::IfThenElse(some, hn::Max(most, last), most);
     begin = end;

@@ -46,8 +46,8 @@ struct Sample
   V ThirdAxis[N];
   V Rest[2];
   V Second;
-  /// 2D: the normal n = (-u_y, u_x), also in two parts, see GetAlongAndAcross; what the fraction has of n in
-  /// two parts; and κ/2.
+  /// 2D: the normal n = (-u_y, u_x), also in two parts, see GetAlongAndAcross; what the fraction
+  /// has of n in two parts; and κ/2.
   V Normal[2];
   V HighNormal[2];
   V LowNormal[2];
@@ -140,9 +140,10 @@ STAGE_INLINE V GetWindow(const Walk& walk, const V (&v)[N])
 }
 
 /**
- * What surflets add up to. Those of variants and of metrics with a second axis add noise and variance one by
- * one. Others leave to the end what does not differ from corner to corner, see GetSums: with the weight w they
- * add w s g and w t g, in space w (k s) g and w (t g), and for the variance the squares.
+ * What surflets add up to. Those of variants and of metrics with a second axis add noise and
+ * variance one by one. Others leave to the end what does not differ from corner to corner, see
+ * GetSums: with the weight w they add w s g and w t g, in space w (k s) g and w (t g), and for the
+ * variance the squares.
  */
 template <int N>
 struct SurfletSums
@@ -155,7 +156,8 @@ struct SurfletSums
   V AcrossFlow[Across];
   V AcrossVariance;
 
-  /// Between lists sums wait here: a copy of registers in an array would keep them out of registers.
+  /// Between lists sums wait here: a copy of registers in an array would keep them out of
+  /// registers.
   struct Stored
   {
     HWY_ALIGN float Values[4 + N + Across][Lanes];

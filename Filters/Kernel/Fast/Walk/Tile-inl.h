@@ -29,8 +29,8 @@ constexpr std::size_t TileRegisters =
   std::min<std::size_t>(32, std::max<std::size_t>(8, TileSamples / Lanes));
 
 /**
- * The registers of samples that are evaluated together. A register is a rectangle of samples: in images of
- * LaneRows rows, of points all in a row. Columns and rows count within the tile.
+ * The registers of samples that are evaluated together. A register is a rectangle of samples: in
+ * images of LaneRows rows, of points all in a row. Columns and rows count within the tile.
  */
 struct Tile
 {
@@ -41,8 +41,8 @@ struct Tile
   std::size_t LaneColumns;
   HWY_ALIGN float LaneColumn[Lanes];
   HWY_ALIGN float LaneRow[Lanes];
-  /// Where each begins in the block, where its first sample is, and how many of its columns and rows count;
-  /// lanes behind those repeat the last one.
+  /// Where each begins in the block, where its first sample is, and how many of its columns and
+  /// rows count; lanes behind those repeat the last one.
   std::size_t First[TileRegisters];
   float Column[TileRegisters];
   float Row[TileRegisters];
@@ -96,14 +96,15 @@ struct Ruler
 };
 
 /**
- * A group of samples, the same in all lanes. They change almost linearly with two numbers λ in [-1, 1], one
- * within a register, the other from one to the next: a sample is at Place + Σ λ PlaceStep, and so on, up to
- * small rests. Distances s along and t across are from the bent axis of the middle.
+ * A group of samples, the same in all lanes. They change almost linearly with two numbers λ in [-1,
+ * 1], one within a register, the other from one to the next: a sample is at Place + Σ λ PlaceStep,
+ * and so on, up to small rests. Distances s along and t across are from the bent axis of the
+ * middle.
  *
- * Such a sample sees a corner at v - Σ λ PlaceStep, along u = U + Σ λ UStep, with the bend + Σ λ BendStep,
- * each up to its rest. Its s is therefore s + Σ λ sStep up to AlongRest, with sStep = v UStep - AlongStep,
- * and across U, which only takes away, its t is t - Σ λ (PlaceStep + s UStep + s²/2 BendStep + s sStep
- * Bend) up to GetRest(s, Σ |sStep|).
+ * Such a sample sees a corner at v - Σ λ PlaceStep, along u = U + Σ λ UStep, with the bend + Σ λ
+ * BendStep, each up to its rest. Its s is therefore s + Σ λ sStep up to AlongRest, with sStep = v
+ * UStep - AlongStep, and across U, which only takes away, its t is t - Σ λ (PlaceStep + s UStep +
+ * s²/2 BendStep + s sStep Bend) up to GetRest(s, Σ |sStep|).
  */
 template <int N>
 struct Group
@@ -221,7 +222,8 @@ STAGE_INLINE void SetAcrossFlow(Group<N>& group)
 /// The samples at the corners of a span of registers, and those of the whole span on its rulers.
 struct SpanCorners
 {
-  /// In the block: first and last column of the first row, the same of the last row, and one in the middle.
+  /// In the block: first and last column of the first row, the same of the last row, and one in the
+  /// middle.
   std::size_t At[4];
   std::size_t Middle;
   Ruler Lambda;
@@ -277,8 +279,8 @@ STAGE_INLINE V GetRest2(
 }
 
 /**
- * The registers [begin, end) as a group, whose places count from its first cell, `origin`, and the largest
- * surflet of their samples. FinishGroup sets the rest.
+ * The registers [begin, end) as a group, whose places count from its first cell, `origin`, and the
+ * largest surflet of their samples. FinishGroup sets the rest.
  */
 template <int N, class Walk>
 STAGE_INLINE void FitGroup(const Walk& walk, const Tile& tile, const SpanCorners& corners,

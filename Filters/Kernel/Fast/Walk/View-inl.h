@@ -22,7 +22,8 @@ struct Span
 {
   std::size_t Begin;
   std::size_t End;
-  /// Middles of the registers on the rulers, and what no register goes beyond on either side of its own.
+  /// Middles of the registers on the rulers, and what no register goes beyond on either side of its
+  /// own.
   float Lambda[TileRegisters];
   float Mu[TileRegisters];
   float HalfLambda = 0.0f;
@@ -61,7 +62,8 @@ struct Span
   }
 };
 
-/// How a span sees corners: across the flow they are at T - λ Step[0] - μ Step[1], in reach if within Width.
+/// How a span sees corners: across the flow they are at T - λ Step[0] - μ Step[1], in reach if
+/// within Width.
 template <int N>
 struct View
 {
@@ -73,8 +75,8 @@ struct View
 };
 
 /**
- * Whether T of a view comes within its width of 0 at some λ and μ no farther than these from given ones. In
- * space exactly for λ, and for μ by the length of its step.
+ * Whether T of a view comes within its width of 0 at some λ and μ no farther than these from given
+ * ones. In space exactly for λ, and for μ by the length of its step.
  */
 template <int N>
 class NearTest
@@ -130,7 +132,8 @@ private:
   V InverseStep2;
 };
 
-/// How a span sees corners at these indices, displaced by `jitter` and, at most, by as much as `loose`.
+/// How a span sees corners at these indices, displaced by `jitter` and, at most, by as much as
+/// `loose`.
 template <int N, class Walk>
 STAGE_INLINE View<N> GetView(const Walk& walk, const Span<N>& span, const V (&corner)[N],
   const V (&jitter)[N], float loose)

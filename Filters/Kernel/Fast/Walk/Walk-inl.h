@@ -3,12 +3,12 @@
 /**
  * The sum over corners for any Quality and any variant: the order of the stages.
  *
- * Neighbouring samples are reached by the same corners. So they are listed once for a tile of several
- * registers of samples, with a register of corners at a time: first the lattice rows, then the corners
- * on them with their gradients. Then each register of samples finds out which of the corners reach it,
- * again for a register of corners at a time, and takes those one by one. Registers that differ too much
- * do not share a list; samples of a register that lie apart have rows in common only and go to their own
- * corners.
+ * Neighbouring samples are reached by the same corners. So they are listed once for a tile of
+ * several registers of samples, with a register of corners at a time: first the lattice rows, then
+ * the corners on them with their gradients. Then each register of samples finds out which of the
+ * corners reach it, again for a register of corners at a time, and takes those one by one.
+ * Registers that differ too much do not share a list; samples of a register that lie apart have
+ * rows in common only and go to their own corners.
  */
 #if defined(STEERABLE_FAST_WALK_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef STEERABLE_FAST_WALK_INL_H
@@ -40,8 +40,8 @@ public:
     this->Visited = 0;
     this->Samples = &tile;
     this->Started = 0;
-    // Neighbouring tiles are alike: begin with spans that were small enough for the last one, and after one
-    // with room to spare with larger ones.
+    // Neighbouring tiles are alike: begin with spans that were small enough for the last one, and
+    // after one with room to spare with larger ones.
     this->Splits = 0;
     this->Widest = 0.0f;
     this->AddParts(0, tile.Registers, this->Parts);
@@ -303,7 +303,8 @@ private:
       V high = axisX.BoxHigh;
       if (this->Setup.Params.AnisotropicWeight)
       {
-        CutRows(this->Setup, reach, Const(static_cast<float>(y)), Const(static_cast<float>(z)), low, high);
+        CutRows(this->Setup, reach, Const(static_cast<float>(y)), Const(static_cast<float>(z)), low,
+          high);
       }
       const VI begin = ToCorners(hn::Ceil(low));
       const VI steps = hn::Sub(ToCorners(hn::Floor(high)), begin);
@@ -358,7 +359,8 @@ private:
         corner[axis] = hn::Load(DI(), list.Index[axis] + i);
         offset[axis] = hn::ConvertTo(DF(), corner[axis]);
       }
-      Put(this->Setup, Describe(this->Setup, offset, HashCorners(this->Setup, origin, corner)), list, i);
+      const VU hash = HashCorners(this->Setup, origin, corner);
+      Put(this->Setup, Describe(this->Setup, offset, hash), list, i);
     }
     ListBits reaching[TileRegisters];
     SetReaching(this->Setup, span, list, reaching);
@@ -440,13 +442,15 @@ private:
   /// Samples that are farther apart than this, as their surflets see it, do not share a list.
   static constexpr float LargestSpread = N == 2 ? 2.5f : 1.5f;
 
-  /// Nor do samples this many cells from their middle: distances of corners must keep their precision.
+  /// Nor do samples this many cells from their middle: distances of corners must keep their
+  /// precision.
   static constexpr float LargestExtent = 16.0f;
 
   const WalkSetup<N, Kind> Setup;
   const Tile* Samples = nullptr;
   std::uint64_t Visited = 0;
-  /// Spans that a tile begins with, how often spans were split, and by how much the widest is wider than a surflet.
+  /// Spans that a tile begins with, how often spans were split, and by how much the widest is wider
+  /// than a surflet.
   std::size_t Parts = 1;
   std::size_t Splits = 0;
   float Widest = 0.0f;

@@ -16,7 +16,8 @@ namespace steerable
 {
 namespace HWY_NAMESPACE
 {
-/// Which loops: those of the defaults, the same under the lattice's window, or all that NoiseSetup calls variants.
+/// Which loops: those of the defaults, the same under the lattice's window, or all that NoiseSetup
+/// calls variants.
 enum class WalkKind
 {
   Plain,
@@ -40,7 +41,8 @@ struct WalkSetup
   const float* Second;
   V InverseReach;
 
-  STAGE_INLINE WalkSetup(const NoiseSetup& setup, const OctaveSetup& octave, const MetricBlock& block)
+  STAGE_INLINE WalkSetup(
+    const NoiseSetup& setup, const OctaveSetup& octave, const MetricBlock& block)
     : Setup(setup)
     , Params(setup.Parameters)
     , Octave(octave)
@@ -53,7 +55,10 @@ struct WalkSetup
   {
   }
 
-  STAGE_INLINE bool IsOblique() const { return Variant && this->Params.Grid == Lattice::Simplicial; }
+  STAGE_INLINE bool IsOblique() const
+  {
+    return Variant && this->Params.Grid == Lattice::Simplicial;
+  }
   STAGE_INLINE bool IsJittered() const { return Variant && this->Setup.JitterRadius > 0.0f; }
   STAGE_INLINE bool IsStreaks() const { return Variant && this->Params.Surflet == Basis::Streaks; }
 

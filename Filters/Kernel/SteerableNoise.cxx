@@ -89,6 +89,8 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
 
   NoiseSetup setup;
   setup.Isotropic = field.Isotropic;
+  // Not where nothing steers noise of any Strength: that has the bits of vectors of 0, which walk.
+  const bool weak = p.Strength == 0.0;
   if (field.Isotropic)
   {
     // What goes by the vectors, of which there are none.
@@ -133,7 +135,7 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
   setup.Curved = curved;
   const bool shaped = field.Shapes && !field.Isotropic;
   setup.Ball =
-    plain && !curved && !p.LatticeWindow && p.Strength == 0.0 && !shaped && !field.Metrics;
+    plain && !curved && !p.LatticeWindow && weak && !shaped && !field.Metrics;
   setup.SingleCell = setup.Ball ||
     (p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial && !curved &&
       p.Normalize == Normalization::None);

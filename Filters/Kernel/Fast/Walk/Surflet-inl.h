@@ -140,7 +140,8 @@ STAGE_INLINE V GetWindow(const Walk& walk, const V (&v)[N])
 }
 
 /**
- * What surflets add up to. Those of variants and of metrics with a second axis add noise and
+ * What surflets add up to. Those of variants, of metrics with a second axis, and in space of the
+ * paper's model add noise and
  * variance one by one. Others leave to the end what does not differ from corner to corner, see
  * GetSums: with the weight w they add w s g and w t g, in space w (k s) g and w (t g), and for the
  * variance the squares.
@@ -218,7 +219,7 @@ STAGE_INLINE Sums GetSums(const Walk& walk, std::size_t i, const SurfletSums<N>&
   sums.Noise = from.Noise;
   sums.Weight = from.Weight;
   sums.Variance = from.Variance;
-  if (Walk::Variant || walk.Setup.Biaxial)
+  if (Walk::Variant || walk.Setup.Biaxial || (N == 3 && Walk::Windowed))
   {
     return sums;
   }
@@ -363,7 +364,41 @@ STAGE_INLINE void AddPlainSurflet(
   }
   V t[3];
   V weight;
-  if constexpr (Kind::Biaxial)
+  if constexpr (Walk::Windowed && !Kind::Biaxial)
+  {
+    // Many corners under a window have small weights, which need each of these roundings.
+    V v[3];
+    GetOffset(sample, corner, v);
+    const V s = Dot(v, sample.U);
+    const V s2 = hn::Mul(s, s);
+    for (int i = 0; i < 3; ++i)
+    {
+      t[i] = Kind::Curved
+        ? hn::Sub(hn::NegMulAdd(s, sample.U[i],
+                    hn::NegMulAdd(s2, sample.HalfBend[i], offset[i])),
+            sample.Fraction[i])
+        : hn::NegMulAdd(s, sample.U[i], v[i]);
+    }
+    const V ks = hn::Mul(sample.Along, s);
+    const V across2 = hn::Mul(sample.Across, Dot(t, t));
+    const V rest = Dot(t, sample.U);
+    const V slope = hn::MulAdd(hn::NegMulAdd(sample.Across, rest, ks), Dot(sample.U, g),
+      hn::Mul(sample.Across, Dot(t, g)));
+    V window = Const(1.0f);
+    for (int i = 1; i < 3; ++i)
+    {
+      window = hn::Mul(window, QuinticFade(hn::Mul(hn::Abs(v[i]), walk.InverseReach)));
+    }
+    weight = hn::Mul(window,
+      QuinticFades(hn::Mul(hn::Abs(v[0]), walk.InverseReach), hn::MulAdd(ks, s, across2)));
+    sums.Noise = hn::MulAdd(weight, slope, sums.Noise);
+    if constexpr (Kind::Squares)
+    {
+      const V slope2 = hn::MulAdd(ks, ks, hn::Mul(sample.Across, across2));
+      sums.Variance = hn::MulAdd(hn::Mul(weight, weight), slope2, sums.Variance);
+    }
+  }
+  else if constexpr (Kind::Biaxial)
   {
     // On axes of its own each part keeps its precision.
     V v[3];

@@ -440,7 +440,7 @@ private:
   }
 
   /// Samples that are farther apart than this, as their surflets see it, do not share a list.
-  static constexpr float LargestSpread = N == 2 ? 2.5f : 1.5f;
+  static constexpr float LargestSpread = N == 2 && Kind == WalkKind::Plain ? 2.5f : 1.5f;
 
   /// Nor do samples this many cells from their middle: distances of corners must keep their
   /// precision.

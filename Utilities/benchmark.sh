@@ -14,8 +14,10 @@ python3 "$root/Utilities/benchmark.py" "$result"
 echo
 echo "| evaluation at AVX2 | instructions per point | corners visited |"
 echo "|---|---|---|"
-for case in "2 image 0 plain" "2 image 8 plain" "2 image 4 paper" "2 image 0 defaults" "2 points 0 plain" \
-  "3 image 0 plain" "3 image 8 plain" "3 image 4 paper" "3 image 0 defaults" "3 points 0 plain"; do
+for case in "2 image 0 plain" "2 image 8 plain" "2 image 4 paper" "2 image 0 defaults" "2 image 0 straight" \
+  "2 image 0 isotropic" "2 points 0 plain" "2 points 0 defaults" "3 image 0 plain" "3 image 8 plain" \
+  "3 image 4 paper" "3 image 0 defaults" "3 image 0 straight" "3 image 0 isotropic" "3 points 0 plain" \
+  "3 points 0 defaults"; do
   # shellcheck disable=SC2086
   text=$(valgrind --tool=callgrind --callgrind-out-file=/dev/null \
     --toggle-collect='steerable::SteerableNoise::Evaluate*' "$build/bin/evaluateOnce" AVX2 $case 2>&1)

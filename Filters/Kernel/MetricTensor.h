@@ -75,7 +75,7 @@ NoiseParameters WithShape(const NoiseParameters& parameters, const float* shape)
 /// Strength in [0, 1] of a vector or tensor of this magnitude.
 double StrengthOf(const NoiseParameters& parameters, double magnitude);
 
-/// Section 2: the closed form of the supplementary's eigenvalue remap.
+/// Metric of a tensor: the closed form of the supplementary's eigenvalue remap.
 template <int N>
 AxialMetric<N> MetricFromVector(const NoiseParameters& parameters, const Vector<N>& vector);
 
@@ -172,7 +172,7 @@ Matrix<N> TensorOf(const Value* tuple)
 
 /**
  * Bends the metric along the streamline's parabola: curvature d in 1/cells, |d| clamped to 1, the
- * half-length limited to the radius of curvature, and isotropic as |d| reaches 1 (section 4).
+ * half-length limited to the radius of curvature, and isotropic as |d| reaches 1 (Curvature).
  */
 template <int N>
 void ApplyCurvature(AxialMetric<N>& metric, const Vector<N>& curvature);

@@ -4,7 +4,7 @@
 
 #include "LatticeHash.h"
 #include "MetricTensor.h"
-#include "SteerableNoiseStages.h"
+#include "Fast/Stages.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -24,10 +24,39 @@
 #define HWY_TARGET_INCLUDE "SteerableNoise.cxx"
 #include <hwy/foreach_target.h>
 
-#include <hwy/highway.h>
+#include "Fast/Images-inl.h"
+#include "Fast/Points-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-#include "SteerableNoiseSimd-inl.h"
+namespace steerable
+{
+namespace HWY_NAMESPACE
+{
+EvaluationCounts EvaluateImage2(const NoiseSetup& setup, const ImageGrid& grid, const Field& field,
+  std::size_t rowBegin, std::size_t rowEnd, float* noise)
+{
+  return EvaluateImage<2>(setup, grid, field, rowBegin, rowEnd, noise);
+}
+
+EvaluationCounts EvaluateImage3(const NoiseSetup& setup, const ImageGrid& grid, const Field& field,
+  std::size_t rowBegin, std::size_t rowEnd, float* noise)
+{
+  return EvaluateImage<3>(setup, grid, field, rowBegin, rowEnd, noise);
+}
+
+EvaluationCounts EvaluatePoints2(const NoiseSetup& setup, const TupleReader<double>& positions,
+  const Field& field, std::size_t begin, std::size_t end, float* noise)
+{
+  return EvaluatePoints<2>(setup, positions, field, begin, end, noise);
+}
+
+EvaluationCounts EvaluatePoints3(const NoiseSetup& setup, const TupleReader<double>& positions,
+  const Field& field, std::size_t begin, std::size_t end, float* noise)
+{
+  return EvaluatePoints<3>(setup, positions, field, begin, end, noise);
+}
+} // namespace HWY_NAMESPACE
+} // namespace steerable
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -60,6 +89,8 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
 
   NoiseSetup setup;
   setup.Isotropic = field.Isotropic;
+  // Not where nothing steers noise of any Strength: that has the bits of vectors of 0, which walk.
+  const bool weak = p.Strength == 0.0;
   if (field.Isotropic)
   {
     // What goes by the vectors, of which there are none.
@@ -102,9 +133,14 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
   const bool unweighted = gradients && p.Interpolant != Fade::Wide && !p.AnisotropicWeight;
   setup.Biaxial = dimension == 3 && (field.Tensors || field.Metrics || field.Normals);
   setup.Curved = curved;
-  setup.SingleCell = p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial &&
-    !curved && p.Normalize == Normalization::None;
-  setup.Uniform = setup.SingleCell && (!field.Shapes || field.Isotropic) && p.StrengthBy == StrengthMode::Constant &&
+  const bool shaped = field.Shapes && !field.Isotropic;
+  setup.Ball =
+    plain && !curved && !p.LatticeWindow && weak && !shaped && !field.Metrics;
+  setup.SingleCell = setup.Ball ||
+    (p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial && !curved &&
+      p.Normalize == Normalization::None);
+  setup.Uniform = setup.SingleCell && !setup.Biaxial && !shaped &&
+    p.StrengthBy == StrengthMode::Constant &&
     !(p.MaskThreshold > 0.0) && p.Octaves == 1 && !p.Turbulence;
   setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;
   const bool jittered = p.Grid == Lattice::Jittered;

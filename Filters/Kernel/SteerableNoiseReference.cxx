@@ -78,7 +78,7 @@ struct Octave
       }
     }
 
-    // Section 4: the bent offset. Section 5: the surflet travels on its own clock.
+    // Documentation/noise-model.md, Curvature: the bent offset. Motion: the surflet travels on its own clock.
     const double along = v.dot(u);
     Vector<N> bent = v - 0.5 * along * along * this->Metric.Bend;
     double amplitude = 1.0;
@@ -88,7 +88,7 @@ struct Octave
       const double tau = clock - std::floor(clock);
       const double speed = this->Metric.Degenerate ? 0.0 : p.Speed;
       bent += (tau - 0.5) * speed / std::sqrt(this->Metric.Along) * u;
-      amplitude = std::pow(std::sin(Pi * tau), 2) * std::sqrt(8.0 / 3.0);
+      amplitude = std::pow(std::sin(Pi * tau), 2) * MotionAmplitude;
     }
 
     const double window = this->Window(v);
@@ -113,7 +113,7 @@ struct Octave
         break;
       case Basis::Streaks:
       {
-        // Section 6. Where the flow has no direction there is no streak.
+        // Other bases. Where the flow has no direction there is no streak.
         const double scaled = bent.dot(u) * std::sqrt(this->Metric.Along);
         const double across = std::sqrt(std::max(0.0, q - scaled * scaled));
         const double profile = this->Metric.Degenerate
@@ -161,7 +161,7 @@ struct Octave
       }
     }
 
-    // Section 3.
+    // Normalisation.
     switch (p.Normalize)
     {
       case Normalization::WeightSum:

@@ -115,6 +115,12 @@ inline double ValueOf(std::uint32_t hash)
   return static_cast<std::int32_t>(hash) * (1.0 / 2147483648.0);
 }
 
+/// The part of a streak, at its downstream end, over which it falls to 0.
+constexpr double StreakEnd = 0.15;
+
+/// √(8/3): what surflets in motion, which come and go as sin²(πτ), are multiplied by to keep their variance.
+constexpr double MotionAmplitude = 1.6329931618554521;
+
 /// Profile of a streak along its length, sigma in (-1, 1): a ramp that ends sharply downstream.
 inline double StreakProfile(double sigma)
 {
@@ -122,7 +128,7 @@ inline double StreakProfile(double sigma)
   {
     return 0.0;
   }
-  return 0.5 * (1.0 + sigma) * std::min(1.0, (1.0 - sigma) / 0.15);
+  return 0.5 * (1.0 + sigma) * std::min(1.0, (1.0 - sigma) / StreakEnd);
 }
 
 /**

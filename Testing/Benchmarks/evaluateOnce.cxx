@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * One evaluation at one SIMD level, for counting its instructions with callgrind:
- * evaluateOnce LEVEL 2|3 image|points QUALITY plain|paper|defaults. Prints the number of points. Plain is the
- * paper's model without normalisation and curvature, paper with both; the defaults have no Quality.
+ * One evaluation at one SIMD level, for counting its instructions with callgrind: evaluateOnce
+ * LEVEL 2|3 image|points QUALITY KIND. Prints the number of points. KIND plain is the paper's model
+ * without normalisation and curvature, paper with both; the defaults have no Quality, and neither
+ * have straight, the defaults in a constant flow, and isotropic, the defaults with Strength 0 and
+ * without curvature.
  */
 #include "SteerableNoise.h"
 
@@ -21,7 +23,7 @@ int main(int argc, char** argv)
 {
   if (argc != 6)
   {
-    std::fprintf(stderr, "usage: evaluateOnce LEVEL 2|3 image|points QUALITY plain|paper|defaults\n");
+    std::fprintf(stderr, "usage: evaluateOnce LEVEL 2|3 image|points QUALITY plain|paper|defaults|straight|isotropic\n");
     return 2;
   }
   for (std::int64_t target : { HWY_AVX3, HWY_AVX2, HWY_SSE4, HWY_SCALAR })
@@ -34,7 +36,13 @@ int main(int argc, char** argv)
   const int dimension = std::atoi(argv[2]);
   NoiseParameters p;
   p.FeatureSize = 16.0;
-  if (std::strcmp(argv[5], "defaults") != 0)
+  const bool straight = std::strcmp(argv[5], "straight") == 0;
+  if (std::strcmp(argv[5], "isotropic") == 0)
+  {
+    p.Strength = 0.0;
+    p.FollowCurvature = false;
+  }
+  else if (!straight && std::strcmp(argv[5], "defaults") != 0)
   {
     p.LatticeWindow = true;
     p.EigenvalueSum = 4.0;
@@ -58,6 +66,11 @@ int main(int argc, char** argv)
       {
         const double place[3] = { double(i), double(j), double(k) };
         positions.insert(positions.end(), place, place + 3);
+        if (straight)
+        {
+          vectors.insert(vectors.end(), { 0.8f, 0.5f, dimension == 2 ? 0.0f : 0.3f });
+          continue;
+        }
         vectors.push_back(std::cos(0.013f * j + 0.02f * k));
         vectors.push_back(std::sin(0.011f * i));
         vectors.push_back(dimension == 2 ? 0.0f : 0.5f * std::sin(0.017f * (i + j)));

@@ -1,11 +1,28 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Parts of a surflet: fades, hashes, gradients (a part of SteerableNoiseSimd-inl.h, which includes it).
+/// Parts of a surflet, as Surflet.h and LatticeHash.h have them: fades and profiles, hashes,
+/// gradients.
+#if defined(STEERABLE_FAST_PROFILE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STEERABLE_FAST_PROFILE_INL_H
+#undef STEERABLE_FAST_PROFILE_INL_H
+#else
+#define STEERABLE_FAST_PROFILE_INL_H
+#endif
 
+#include "Fast/Registers-inl.h"
+#include "LatticeHash.h"
+#include "NoiseParameters.h"
+#include "Surflet.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace steerable
+{
+namespace HWY_NAMESPACE
+{
 /**
- * Kensler's quintic for t >= 0, exactly 0 from t = 1 on. With r = 1 - t it is r³ (6t² + 3t + 1), which
- * keeps its relative precision where it is small: normalisation would show what is lost there. Here r and
- * the other factor.
+ * Kensler's quintic for t >= 0, exactly 0 from t = 1 on. With r = 1 - t it is r³ (6t² + 3t + 1),
+ * which keeps its relative precision where it is small: normalisation would show what is lost
+ * there. Here r and the other factor.
  */
 HWY_INLINE V QuinticFactors(V t, V& inner)
 {
@@ -21,6 +38,15 @@ HWY_INLINE V QuinticFade(V t)
   return hn::Mul(hn::Mul(hn::Mul(r, r), r), inner);
 }
 
+/// The same at 1 - r, of an r that was not rounded as 1 - t would be.
+HWY_INLINE V QuinticFadeOfRest(V r)
+{
+  r = hn::Max(r, hn::Zero(DF()));
+  const V t = hn::Sub(Const(1.0f), r);
+  const V inner = hn::MulAdd(hn::MulAdd(Const(6.0f), t, Const(3.0f)), t, Const(1.0f));
+  return hn::Mul(hn::Mul(hn::Mul(r, r), r), inner);
+}
+
 /// Product of two fades.
 HWY_INLINE V QuinticFades(V t, V u)
 {
@@ -30,7 +56,8 @@ HWY_INLINE V QuinticFades(V t, V u)
   return hn::Mul(hn::Mul(hn::Mul(r, r), r), hn::Mul(inner, other));
 }
 
-/// The same with its absolute precision only, two operations less: enough for a sum that nothing divides.
+/// The same with its absolute precision only, two operations less: enough for a sum that nothing
+/// divides.
 HWY_INLINE V PlainQuinticFade(V t)
 {
   t = hn::Min(t, Const(1.0f));
@@ -117,7 +144,8 @@ HWY_INLINE V UniformSign(VU hash)
   return hn::BitCast(DF(), hn::And(hash, hn::Set(DU(), 0x80000000u)));
 }
 
-/// Uniform gradient but for its sign: a direction in the plane, and in 3D what it is multiplied by, and the height.
+/// Uniform gradient but for its sign: a direction in the plane, and in 3D what it is multiplied by,
+/// and the height.
 HWY_INLINE void UniformTurn(VU hash, V& cosine, V& sine)
 {
   const V turn = HashToSigned(hn::ShiftLeft<1>(hash));
@@ -200,12 +228,14 @@ HWY_INLINE void PerlinGradient(VU hash, V (&g)[N])
 HWY_INLINE V StreakProfile(V sigma)
 {
   const V ramp = hn::MulAdd(sigma, Const(0.5f), Const(0.5f));
-  const V end = hn::Min(hn::Mul(hn::Sub(Const(1.0f), sigma), Const(1.0f / 0.15f)), Const(1.0f));
+  const V one = Const(1.0f);
+  const V perEnd = Const(1.0f / static_cast<float>(StreakEnd));
+  const V end = hn::Min(hn::Mul(hn::Sub(one, sigma), perEnd), one);
   return hn::Max(hn::Mul(ramp, hn::Max(end, Const(0.0f))), Const(0.0f));
 }
 
 /// Cells come wrapped, so few steps bring an index near them back into [0, period).
-HWY_NOINLINE VU WrapIndex(VU index, std::int64_t period)
+inline HWY_NOINLINE VU WrapIndex(VU index, std::int64_t period)
 {
   const VI cells = hn::Set(DI(), static_cast<std::int32_t>(period));
   VI i = hn::BitCast(DI(), index);
@@ -220,3 +250,8 @@ HWY_NOINLINE VU WrapIndex(VU index, std::int64_t period)
     i = hn::IfThenElse(below, hn::Add(i, cells), hn::IfThenElse(above, hn::Sub(i, cells), i));
   }
 }
+} // namespace HWY_NAMESPACE
+} // namespace steerable
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,8 +1,36 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Quality 0 without extensions: the corners of the sample's own cell (a part of SteerableNoiseSimd-inl.h, which includes it).
+/// Quality 0 without extensions: the corners of the sample's own cell.
+#if defined(STEERABLE_FAST_CELLS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STEERABLE_FAST_CELLS_INL_H
+#undef STEERABLE_FAST_CELLS_INL_H
+#else
+#define STEERABLE_FAST_CELLS_INL_H
+#endif
 
-/// Gradients of the lattice rows on both sides of a row of pixels, hashed once and kept while they serve.
+#include "Fast/Metrics-inl.h"
+#include "Fast/Profile-inl.h"
+#include "Fast/Sums-inl.h"
+
+#include <array>
+#include <vector>
+
+HWY_BEFORE_NAMESPACE();
+namespace steerable
+{
+namespace HWY_NAMESPACE
+{
+/// Where the samples of a register are in the lattice of an octave: cells as the hash takes them,
+/// and fractions from their corners.
+template <int N>
+struct Places
+{
+  VU Cell[N];
+  V Fraction[N];
+};
+
+/// Gradients of the lattice rows on both sides of a row of pixels, hashed once and kept while they
+/// serve.
 template <int N>
 class GradientRows
 {
@@ -190,12 +218,12 @@ HWY_INLINE V CellWindow(Fade fade, V fraction)
 }
 
 /**
- * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix. `near` is
- * the window of the corner below on each axis; that of the one above is 1 less it. `Weighted`:
- * faded by the metric.
+ * Quality 0, straight, unnormalised: the 2^N corners of the cell, with the metric as a matrix.
+ * `near` is the window of the corner below on each axis; that of the one above is 1 less it.
+ * `Weighted`: faded by the metric.
  */
 template <int N, bool Weighted, class Corners>
-WALK_INLINE V SumOverCell(
+STAGE_INLINE V SumOverCell(
   const V (&u)[N], V along, V across, const V (&f)[N], const V (&near)[N], Corners& corners)
 {
   // G = b I + (k - b) u uT
@@ -210,8 +238,8 @@ WALK_INLINE V SumOverCell(
       G[j][i] = G[i][j];
     }
   }
-  // G v and q = v G v at the first corner. A step along an axis adds a column of G to the one, and the
-  // sum of that component before and after to the other.
+  // G v and q = v G v at the first corner. A step along an axis adds a column of G to the one, and
+  // the sum of that component before and after to the other.
   V Gv[N];
   for (int i = 0; i < N; ++i)
   {
@@ -271,3 +299,104 @@ WALK_INLINE V SumOverCell(
     return hn::MulAdd(near[2], hn::Sub(lower, upper), upper);
   }
 }
+
+/// Where the metric is I: the sum over the corners of the cell, which no ball of radius 1 goes
+/// beyond.
+template <int N, bool Squares, class Corners>
+STAGE_INLINE Sums SumOverBalls(const V (&f)[N], Corners& corners)
+{
+  const V one = Const(1.0f);
+  // From the sample to the corners below and above, and its square.
+  V v[N][2];
+  V v2[N][2];
+  for (int axis = 0; axis < N; ++axis)
+  {
+    v[axis][0] = hn::Neg(f[axis]);
+    v[axis][1] = hn::Sub(one, f[axis]);
+    v2[axis][0] = hn::Mul(v[axis][0], v[axis][0]);
+    v2[axis][1] = hn::Mul(v[axis][1], v[axis][1]);
+  }
+  Sums sums;
+  for (int row = 0; row < 1 << (N - 1); ++row)
+  {
+    const int oy = row % 2;
+    const int oz = row / 2;
+    corners.SelectRow(oy, oz);
+    for (int ox = 0; ox < 2; ++ox)
+    {
+      V at[N] = { v[0][ox], v[1][oy] };
+      V q = hn::Add(v2[0][ox], v2[1][oy]);
+      if constexpr (N == 3)
+      {
+        at[2] = v[2][oz];
+        q = hn::Add(q, v2[2][oz]);
+      }
+      const V weight = QuinticFade(q);
+      sums.Noise = hn::MulAdd(weight, corners.GetSlope(ox, at), sums.Noise);
+      sums.Weight = hn::Add(sums.Weight, weight);
+      if constexpr (Squares)
+      {
+        sums.Variance = hn::MulAdd(hn::Mul(weight, weight), q, sums.Variance);
+      }
+    }
+  }
+  return sums;
+}
+
+/**
+ * The same for Quality 0 without extensions; `getPlaces` also gives the windows of the lower
+ * corners. `direct`: where the noise goes if all is uniform, see NoiseSetup; else null.
+ */
+template <int N, class Corners, class GetPlaces>
+STAGE_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, MetricBlock& block,
+  std::size_t count, float* direct, Corners& corners, std::uint64_t& visited, GetPlaces&& getPlaces)
+{
+  const EigenvalueRange range = VectorEigenvalues(setup.Parameters, N);
+  const V strength = Const(static_cast<float>(setup.Parameters.Strength));
+  const V along = AtStrength(range.Along, strength);
+  const V across = AtStrength(range.Across, strength);
+  const bool weighted = setup.Parameters.AnisotropicWeight;
+  const bool squares = setup.Parameters.Normalize == Normalization::UnitVariance;
+  const bool metric = weighted || setup.Parameters.MetricInProjection;
+  for (std::size_t i = 0; i < count; i += Lanes)
+  {
+    Places<N> places;
+    V near[N];
+    getPlaces(i, places, near);
+    corners.SetCells(places.Cell);
+    V u[N];
+    for (int axis = 0; axis < N; ++axis)
+    {
+      u[axis] = Load(block.U[axis] + i);
+    }
+    const V one = Const(1.0f);
+    const V k = !metric ? one : direct ? along : Load(block.Along + i);
+    const V b = !metric ? one : direct ? across : Load(block.Across + i);
+    const V noise = setup.Ball
+      ? Normalized(setup, N,
+          squares ? SumOverBalls<N, true>(places.Fraction, corners)
+                  : SumOverBalls<N, false>(places.Fraction, corners))
+      : weighted
+      ? SumOverCell<N, true>(u, k, b, places.Fraction, near, corners)
+      : SumOverCell<N, false>(u, k, b, places.Fraction, near, corners);
+    if (!direct)
+    {
+      AddOctave(setup, octave, block, i, noise);
+    }
+    else if (i + Lanes <= count)
+    {
+      hn::StoreU(noise, DF(), direct + i);
+    }
+    else
+    {
+      hn::Store(noise, DF(), block.Noise);
+      std::copy_n(block.Noise, count - i, direct + i);
+    }
+  }
+  visited += count << N;
+}
+} // namespace HWY_NAMESPACE
+} // namespace steerable
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What the stages of the fast path hand to each other (private to SteerableNoise.cxx). The names are
- * those of SteerableNoiseReference: u and m the axes of the metric, k, b and e its eigenvalues along,
- * across and on the second axis, v a corner minus the point, q its squared distance.
+ * What the stages of the fast path hand to each other (private to the files of this folder and
+ * SteerableNoise.cxx). The names are those of SteerableNoiseReference: u and m the axes of the
+ * metric, k, b and e its eigenvalues along, across and on the second axis, v a corner minus the
+ * point, q its squared distance.
  */
-#ifndef SteerableNoiseStages_h
-#define SteerableNoiseStages_h
+#ifndef Fast_Stages_h
+#define Fast_Stages_h
 
 #include "MetricTensor.h"
 #include "SteerableNoise.h"
@@ -17,15 +18,17 @@ namespace steerable
 {
 /// Samples that go through the stages together: their arrays stay in the nearest caches.
 constexpr std::size_t BlockSize = 512;
-/// Samples of a row of an image at Quality 0: fewer, since their arrays then stay in the nearest cache.
+/// Samples of a row of an image at Quality 0: fewer, since their arrays then stay in the nearest
+/// cache.
 constexpr std::size_t CellsColumns = 256;
-/// Registers of samples that share lists of corners where they can; in images one below the other.
-constexpr std::size_t TileRegisters = 8;
-/// Where walks want it, a block of an image is as many rows of this many samples.
-constexpr std::size_t PatchColumns = BlockSize / TileRegisters;
+/// Samples that share lists of corners where they can.
+constexpr std::size_t TileSamples = 64;
+/// Where walks want it, a block of an image is this many rows of this many samples.
+constexpr std::size_t PatchRows = 8;
+constexpr std::size_t PatchColumns = BlockSize / PatchRows;
 /// Room for a whole SIMD register behind each row, and behind the block.
 constexpr std::size_t PatchStride = PatchColumns + 16;
-constexpr std::size_t BlockRoom = TileRegisters * PatchStride + 16;
+constexpr std::size_t BlockRoom = PatchRows * PatchStride + 16;
 /// A row with its neighbours to either side, and room behind.
 constexpr std::size_t RowRoom = PatchColumns + 2 * ImageGrid::MaximumStride + 32;
 
@@ -62,12 +65,15 @@ struct NoiseSetup
   float Support;
   /// Only what the fast loops know: gradients on the square lattice, still, quintic and separable.
   bool Variant;
-  /// Nothing but the 2^N corners of the cell and no sums: Rice's Quality 0, and Perlin's noise.
+  /// Nothing but the 2^N corners of the cell: Rice's Quality 0 without sums, Perlin's noise, and
+  /// balls.
   bool SingleCell;
+  /// The metric is I everywhere, and no window: a surflet is a ball of radius 1 around its corner.
+  bool Ball;
   /// The same with one strength for all vectors, and nothing to do with the sum but to hand it out.
   bool Uniform;
-  /// 0: a sample belongs to the corner below it. 1/2: to the nearest one, from which its distance has a
-  /// float's full relative precision; normalisation would show less.
+  /// 0: a sample belongs to the corner below it. 1/2: to the nearest one, from which its distance
+  /// has a float's full relative precision; normalisation would show less.
   double CellRounding;
   /// Nothing steers: every metric is I.
   bool Isotropic;
@@ -77,7 +83,8 @@ struct NoiseSetup
   /// How far jitter moves a corner down and up an axis.
   float JitterDown;
   float JitterUp;
-  /// Middle of its way on every axis, and radius of the ball around that holds all of it; 0: none moves.
+  /// Middle of its way on every axis, and radius of the ball around that holds all of it; 0: none
+  /// moves.
   float JitterMiddle;
   float JitterRadius;
   /// From indices of the lattice to its places, and back.
@@ -110,13 +117,13 @@ struct MetricBlock
   /// Places of the samples in the lattice: cells and fractions.
   alignas(64) std::uint32_t Cell[3][BlockRoom];
   alignas(64) float Fraction[3][BlockRoom];
-  /// Room for tuples that the host converts, and for the directions of a patch and of two more rows: unit
-  /// vectors, in 2D vectors and 1/length.
+  /// Room for tuples that the host converts, and for the directions of a patch and of two more
+  /// rows: unit vectors, in 2D vectors and 1/length.
   alignas(64) float Tuples[6 * BlockRoom];
   alignas(64) float Shapes[3 * BlockRoom];
   alignas(64) double MetricTuples[6 * BlockRoom];
   alignas(64) double Positions[3 * BlockRoom];
-  alignas(64) float DirectionRows[TileRegisters + 2][3][RowRoom];
+  alignas(64) float DirectionRows[PatchRows + 2][3][RowRoom];
 };
 } // namespace steerable
 

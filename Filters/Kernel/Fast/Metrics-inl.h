@@ -1,39 +1,37 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-/// Metrics of a block of samples (a part of SteerableNoiseSimd-inl.h, which includes it).
+/// Axes and eigenvalues of a block of samples, straight.
+#if defined(STEERABLE_FAST_METRICS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STEERABLE_FAST_METRICS_INL_H
+#undef STEERABLE_FAST_METRICS_INL_H
+#else
+#define STEERABLE_FAST_METRICS_INL_H
+#endif
 
+#include "Fast/Registers-inl.h"
+#include "Fast/Stages.h"
+
+#include <Eigen/Geometry>
+
+HWY_BEFORE_NAMESPACE();
+namespace steerable
+{
+namespace HWY_NAMESPACE
+{
 HWY_INLINE VD ToDouble(const float* from)
 {
   return hn::PromoteTo(DD(), hn::LoadU(DFH(), from));
 }
 
-/// a b - c d of exact products: by Kahan's way, or in double where there are no fused products.
-HWY_INLINE V DifferenceOfProducts(V a, V b, V c, V d)
+/// An eigenvalue at full strength, at these strengths.
+HWY_INLINE V AtStrength(double eigenvalue, V strength)
 {
-#if HWY_NATIVE_FMA
-  const V product = hn::Mul(c, d);
-  return hn::Add(hn::MulSub(a, b, product), hn::NegMulAdd(c, d, product));
-#else
-  HWY_ALIGN float values[4][Lanes];
-  const V registers[4] = { a, b, c, d };
-  for (int i = 0; i < 4; ++i)
-  {
-    hn::Store(registers[i], DF(), values[i]);
-  }
-  for (std::size_t lane = 0; lane < Lanes; lane += hn::MaxLanes(DD()))
-  {
-    const VD product = hn::Mul(ToDouble(values[2] + lane), ToDouble(values[3] + lane));
-    const VD difference =
-      hn::MulSub(ToDouble(values[0] + lane), ToDouble(values[1] + lane), product);
-    hn::Store(hn::DemoteTo(DFH(), difference), DFH(), values[0] + lane);
-  }
-  return hn::Load(DF(), values[0]);
-#endif
+  return hn::MulAdd(strength, Const(static_cast<float>(eigenvalue) - 1.0f), Const(1.0f));
 }
 
 /**
- * v times 1/|v|, which is known up to rounding: the nearest floats, and what they lack. In double, with
- * one step of Newton: a length that is off shows as much as an eigenvalue that is.
+ * v times 1/|v|, which is known up to rounding: the nearest floats, and what they lack. In double,
+ * with one step of Newton: a length that is off shows as much as an eigenvalue that is.
  */
 HWY_INLINE void SplitUnit(
   const V (&v)[3], V inverse, float* const (&unit)[2], float* const (&rest)[2])
@@ -66,13 +64,15 @@ enum class Wanted
   Units,
   /// With lengths, and in 2D, if there is room for it, what the units lack.
   Metrics,
-  /// 2D: the vectors as they are, unless they are too long or too short to be squared, and 1/length.
+  /// 2D: the vectors as they are, unless they are too long or too short to be squared, and
+  /// 1/length.
   Inverses
 };
 
 /**
- * Directions of `count` tuples of 3 floats, 0 where there is none. In 2D they lie in the plane, and the third
- * component counts for the length alone. Returns whether all of them have a direction beyond doubt.
+ * Directions of `count` tuples of 3 floats, 0 where there is none. In 2D they lie in the plane, and
+ * the third component counts for the length alone. Returns whether all of them have a direction
+ * beyond doubt.
  */
 template <int N, Wanted What>
 HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* const (&unit)[3],
@@ -103,8 +103,8 @@ HWY_NOINLINE bool UnitVectors(const float* tuples, std::size_t count, float* con
     {
       length2 = whole2;
     }
-    // NaN fails the comparisons; what squares to too much or too little, or is next to nothing in the plane, is
-    // looked at again.
+    // NaN fails the comparisons; what squares to too much or too little, or is next to nothing in
+    // the plane, is looked at again.
     constexpr auto least = static_cast<float>(2.0 * SmallestInPlane * SmallestInPlane);
     const V smallest = hn::Max(Const(1e-30f), hn::Mul(whole2, Const(least)));
     const auto good = hn::And(hn::Gt(length2, smallest), hn::Lt(whole2, Const(1e30f)));
@@ -311,86 +311,6 @@ void ReshapeMetrics(const NoiseSetup& setup, const float* shapes, const float* n
   }
 }
 
-/**
- * Adds u_axis ∂u/∂axis to the bend, the neighbours turned to the side of the middle one; a neighbour without a
- * direction stands for no change. Rows are unit vectors, in 2D vectors and 1/length.
- */
-template <int N>
-HWY_INLINE void AddDerivative(MetricBlock& block, std::size_t at, std::size_t count, int axis,
-  const std::array<const float*, 3>& own, const std::array<const float*, 3>& before,
-  const std::array<const float*, 3>& after, const float* scale, bool perLane)
-{
-  const V signBit = hn::BitCast(DF(), hn::Set(DU(), 0x80000000u));
-  for (std::size_t i = 0; i < count; i += Lanes)
-  {
-    V u[N];
-    V a[N];
-    V c[N];
-    for (int k = 0; k < N; ++k)
-    {
-      u[k] = Load(own[k] + i);
-      a[k] = Load(before[k] + i);
-      c[k] = Load(after[k] + i);
-    }
-    const V signA = hn::And(Dot(u, a), signBit);
-    const V signC = hn::And(Dot(u, c), signBit);
-    const V perStep = perLane ? Load(scale + i) : Const(*scale);
-    V change[N];
-    if constexpr (N == 2)
-    {
-      // Only the part across u counts. Differences of unit vectors would lose it to rounding where samples
-      // are close together.
-      const V acrossA = hn::Xor(DifferenceOfProducts(u[0], a[1], u[1], a[0]), signA);
-      const V acrossC = hn::Xor(DifferenceOfProducts(u[0], c[1], u[1], c[0]), signC);
-      const V inverse = Load(own[2] + i);
-      const V turn = hn::Mul(
-        inverse, hn::MulSub(acrossC, Load(after[2] + i), hn::Mul(acrossA, Load(before[2] + i))));
-      u[0] = hn::Mul(u[0], inverse);
-      u[1] = hn::Mul(u[1], inverse);
-      change[0] = hn::Neg(hn::Mul(turn, u[1]));
-      change[1] = hn::Mul(turn, u[0]);
-    }
-    else
-    {
-      const auto noneA = hn::Eq(Dot(a, a), hn::Zero(DF()));
-      const auto noneC = hn::Eq(Dot(c, c), hn::Zero(DF()));
-      for (int k = 0; k < N; ++k)
-      {
-        change[k] = hn::Sub(hn::IfThenElse(noneC, u[k], hn::Xor(c[k], signC)),
-          hn::IfThenElse(noneA, u[k], hn::Xor(a[k], signA)));
-      }
-    }
-    const V factor = hn::Mul(u[axis], perStep);
-    for (int k = 0; k < N; ++k)
-    {
-      float* const bend = block.Bend[k] + at + i;
-      hn::StoreU(hn::MulAdd(factor, change[k], Load(bend)), DF(), bend);
-    }
-  }
-}
-
-/// Splits tuples of 3 into the bend; what is not finite or beyond sense becomes 0.
-template <int N>
-HWY_NOINLINE void CopyCurvature(
-  const NoiseSetup& setup, const float* tuples, std::size_t count, MetricBlock& block)
-{
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    double bend[N];
-    double length2 = 0.0;
-    for (int axis = 0; axis < N; ++axis)
-    {
-      bend[axis] = tuples[3 * i + axis] * setup.Parameters.FeatureSize;
-      length2 += bend[axis] * bend[axis];
-    }
-    const bool good = length2 < 1e30;
-    for (int axis = 0; axis < N; ++axis)
-    {
-      block.Bend[axis][i] = good ? static_cast<float>(bend[axis]) : 0.0f;
-    }
-  }
-}
-
 /// Repeats the sample before `end` behind it, so that the lanes there are like their neighbours.
 void PadTail(MetricBlock& block, std::size_t end)
 {
@@ -441,7 +361,8 @@ void MetricsOfTensors(const NoiseSetup& setup, const Value* tuples, const float*
   }
 }
 
-/// Directions along the flow of samples [first, first + count), as AddDerivative takes them; 0 where there is none.
+/// Directions along the flow of samples [first, first + count), as AddDerivative takes them; 0
+/// where there is none.
 template <int N>
 void Directions(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t count,
   MetricBlock& block, float* const (&row)[3])
@@ -491,8 +412,8 @@ inline void MetricsOfNothing(std::size_t at, std::size_t count, MetricBlock& blo
   }
 }
 
-/// Axes and eigenvalues from `at` on, once the bend is known. True: all have a direction and the same
-/// strength, and none of their eigenvalues are written.
+/// Axes and eigenvalues from `at` on, once the bend is known. True: all have a direction and the
+/// same strength, and none of their eigenvalues are written.
 template <int N>
 bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std::size_t at,
   std::size_t count, MetricBlock& block, std::uint64_t& bounded)
@@ -549,3 +470,8 @@ bool Metrics(const NoiseSetup& setup, const Field& field, std::size_t first, std
   PadTail(block, at + count);
   return false;
 }
+} // namespace HWY_NAMESPACE
+} // namespace steerable
+HWY_AFTER_NAMESPACE();
+
+#endif

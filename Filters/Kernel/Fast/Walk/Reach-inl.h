@@ -1,0 +1,412 @@
+// SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * Which corners a tile, or a sample, can reach: intervals of lattice rows, and of corners on them.
+ * They are never too small.
+ */
+#if defined(STEERABLE_FAST_WALK_REACH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef STEERABLE_FAST_WALK_REACH_INL_H
+#undef STEERABLE_FAST_WALK_REACH_INL_H
+#else
+#define STEERABLE_FAST_WALK_REACH_INL_H
+#endif
+
+#include "Fast/Walk/Tile-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace steerable
+{
+namespace HWY_NAMESPACE
+{
+/// A quadratic in s.
+STAGE_INLINE V Quadratic(const V (&coefficients)[3], V s)
+{
+  return hn::MulAdd(hn::MulAdd(coefficients[2], s, coefficients[1]), s, coefficients[0]);
+}
+
+/// Half-width of a surflet at |s| = `distance` and farther; beyond its end so negative that it
+/// stays so.
+STAGE_INLINE V GetTaper(V distance, V inverseLength, V halfWidth, bool tapers)
+{
+  const V s = hn::Mul(hn::Max(distance, hn::Zero(DF())), inverseLength);
+  const V left = hn::NegMulAdd(s, s, Const(1.0f));
+  const V taper = tapers ? hn::Sqrt(hn::Max(left, hn::Zero(DF()))) : Const(1.0f);
+  return hn::IfThenElse(hn::Lt(left, hn::Zero(DF())), Const(-1e9f), hn::Mul(halfWidth, taper));
+}
+
+/// Axes across the flow: in 2D the normal (-u_y, u_x), in 3D those of space.
+template <int N>
+constexpr int AxesAcross = N == 2 ? 1 : N;
+
+/// A vector across u on these axes.
+template <int N>
+STAGE_INLINE void ToAcross(const V (&v)[N], const V (&u)[N], V (&across)[AxesAcross<N>])
+{
+  if constexpr (N == 2)
+  {
+    across[0] = hn::MulSub(u[0], v[1], hn::Mul(u[1], v[0]));
+  }
+  else
+  {
+    const V along = Dot(v, u);
+    for (int axis = 0; axis < N; ++axis)
+    {
+      across[axis] = hn::NegMulAdd(along, u[axis], v[axis]);
+    }
+  }
+}
+
+/// Where lattice rows are cut: the reach of registers together in all lanes, or that of a sample in
+/// each.
+template <int N>
+struct Reach
+{
+  V Place[N];
+  V U[N];
+  V Bend[N];
+  V BendLength;
+  V LargestBend; // of any sample
+  V Length;      // what can be ahead or behind included
+  V HalfWidth;
+  V LargestWidth;
+  V InverseLength;
+  /// Largest distance of a place from the middle; how far rows are continued for samples ahead on
+  /// them.
+  V Spread;
+  V RowSpread;
+  /// What s can be off that of the middle; and t, by Across[0] + Across[1] |s| + Across[2] s².
+  V AlongReach;
+  V Across[3];
+  bool Tapers;
+  /// Of bent surflets: as many as leave the parabola little to be off a line, see CutRows.
+  int Sections = 1;
+
+  STAGE_INLINE Reach() {}
+  STAGE_INLINE void SetSections(float sag)
+  {
+    this->Sections = sag < 0.8f ? 1 : sag < 3.2f ? 2 : 4;
+  }
+
+  /**
+   * All that a group reaches. Of its first step the part on a lattice row, as long as `row`, is
+   * either a step like others, or the row is continued by it.
+   */
+  STAGE_INLINE Reach(const Group<N>& group, const Extent& extent, V row)
+    : BendLength(group.BendLength)
+    , LargestBend(hn::Add(group.HalfKappa, group.HalfKappa))
+    , HalfWidth(Const(extent.HalfWidth))
+    , InverseLength(Const(1.0f / extent.HalfLength))
+    , Spread(hn::Add(group.Places, group.PlaceRest))
+    , Tapers(extent.Tapers)
+  {
+    std::copy(group.Place, group.Place + N, this->Place);
+    std::copy(group.U, group.U + N, this->U);
+    std::copy(group.Bend, group.Bend + N, this->Bend);
+    this->SetAcross(group, extent, row);
+    const V continued = this->LargestWidth;
+    this->SetAcross(group, extent, hn::Zero(DF()));
+    if (hn::GetLane(hn::Sub(this->LargestWidth, continued)) >= 0.0f)
+    {
+      this->SetAcross(group, extent, row);
+    }
+    this->SetSections(
+      hn::GetLane(hn::Mul(hn::Mul(this->Length, this->Length), this->BendLength)));
+  }
+
+private:
+  STAGE_INLINE void SetAcross(const Group<N>& group, const Extent& extent, V row)
+  {
+    const V half = Const(0.5f);
+    this->RowSpread = row;
+    // Σ |sStep| at most.
+    V along = group.MostTurn;
+    V steps0 = hn::Zero(DF());
+    V steps1 = hn::Zero(DF());
+    for (int k = 0; k < 2; ++k)
+    {
+      V place[N];
+      std::copy(group.PlaceStep[k], group.PlaceStep[k] + N, place);
+      place[0] = k == 0 ? hn::Sub(place[0], hn::CopySign(row, place[0])) : place[0];
+      const V alongStep = Dot(place, this->U);
+      V turn[N];
+      for (int axis = 0; axis < N; ++axis)
+      {
+        place[axis] = hn::NegMulAdd(alongStep, this->U[axis], place[axis]);
+        turn[axis] = hn::NegMulAdd(alongStep, this->Bend[axis], group.UStep[k][axis]);
+      }
+      along = hn::Add(along, hn::Abs(alongStep));
+      steps0 = hn::Add(steps0, hn::Sqrt(Dot(place, place)));
+      steps1 = hn::Add(steps1, hn::Sqrt(Dot(turn, turn)));
+    }
+    this->Across[0] = hn::Add(steps0, group.GetRest(hn::Zero(DF()), along));
+    this->Across[1] = hn::Add(hn::MulAdd(group.BendLength, group.MostTurn, steps1),
+      hn::MulAdd(along, group.ChangeRest, group.Linear));
+    this->Across[2] = hn::MulAdd(half, group.Change, group.HalfBendRest);
+    this->AlongReach = hn::Add(hn::Add(along, group.AlongRest), Const(extent.Travel));
+    this->Length = hn::Add(Const(extent.HalfLength), this->AlongReach);
+    this->LargestWidth = hn::Add(this->HalfWidth, Quadratic(this->Across, this->Length));
+  }
+};
+
+/// Reach of the samples from `first` on, each from its own cell.
+template <int N, class Walk>
+STAGE_INLINE Reach<N> GetReachApart(const Walk& walk, std::size_t first)
+{
+  Reach<N> reach;
+  for (int axis = 0; axis < N; ++axis)
+  {
+    reach.Place[axis] = Load(walk.Block.Fraction[axis] + first);
+    reach.U[axis] = Load(walk.Block.U[axis] + first);
+    reach.Bend[axis] =
+      walk.Setup.Curved ? Load(walk.Block.ClampedBend[axis] + first) : hn::Zero(DF());
+  }
+  reach.BendLength = reach.LargestBend = hn::Sqrt(Dot(reach.Bend, reach.Bend));
+  const V one = Const(1.0f);
+  const V rootInverse = hn::Div(one, hn::Sqrt(Load(walk.Along + first)));
+  const V length = hn::MulAdd(Const(walk.GetLengthSupport()), rootInverse, Const(Slack));
+  reach.HalfWidth = hn::Add(
+    hn::Div(Const(walk.GetWidthSupport()), hn::Sqrt(walk.GetLeastAcross(first))), Const(Slack));
+  reach.LargestWidth = reach.HalfWidth;
+  reach.InverseLength = hn::Div(one, length);
+  reach.AlongReach = hn::Mul(rootInverse, Const(walk.GetTravel()));
+  reach.Length = hn::Add(length, reach.AlongReach);
+  reach.Spread = reach.RowSpread = hn::Zero(DF());
+  reach.Across[0] = reach.Across[1] = reach.Across[2] = hn::Zero(DF());
+  reach.Tapers = !walk.IsStreaks();
+  reach.SetSections(
+    GreatestLane(hn::Mul(hn::Mul(reach.Length, reach.Length), reach.BendLength)));
+  return reach;
+}
+
+/// Bounds of loops over corners, whatever the numbers are.
+STAGE_INLINE VI ToCorners(V place)
+{
+  return hn::ConvertTo(DI(), hn::Max(hn::Min(place, Const(1000.0f)), Const(-1000.0f)));
+}
+
+/// How an index of the lattice changes along the flow, and with it across.
+struct IndexAxis
+{
+  V Along;
+  V InverseAlong;
+  V Bend;
+  V Width;
+  V BoxLow;
+  V BoxHigh;
+};
+
+/// How much farther across a corner can stand before jitter moves it, the change of its sag
+/// included.
+template <int N, class Walk>
+STAGE_INLINE V GetLooseness(const Walk& walk, const Reach<N>& reach)
+{
+  const V radius = Const(walk.Setup.JitterRadius);
+  return hn::MulAdd(hn::Mul(radius, reach.LargestBend), hn::Add(reach.Length, radius), radius);
+}
+
+template <int N, class Walk>
+STAGE_INLINE IndexAxis GetIndexAxis(const Walk& walk, const Reach<N>& reach, int axis)
+{
+  IndexAxis result;
+  result.Along = reach.U[axis];
+  result.Bend = reach.Bend[axis];
+  float w2 = 1.0f;
+  if (walk.IsOblique())
+  {
+    result.Along = result.Bend = hn::Zero(DF());
+    w2 = 0.0f;
+    for (int i = 0; i < N; ++i)
+    {
+      const auto w = static_cast<float>(walk.Setup.LatticeIndices[axis][i]);
+      result.Along = hn::MulAdd(Const(w), reach.U[i], result.Along);
+      result.Bend = hn::MulAdd(Const(w), reach.Bend[i], result.Bend);
+      w2 += w * w;
+    }
+  }
+  const V across =
+    hn::Sqrt(hn::Max(hn::NegMulAdd(result.Along, result.Along, Const(w2)), hn::Zero(DF())));
+  result.Width = hn::Mul(hn::Add(reach.LargestWidth, GetLooseness(walk, reach)), across);
+  result.InverseAlong = Inverse(result.Along);
+  // Window and jitter are boxes of places; oblique indices need √3 times as many to cover them.
+  const float more = walk.IsOblique() ? 1.75f : 1.0f;
+  const V box =
+    hn::MulAdd(reach.Spread, Const(std::sqrt(w2)), Const(walk.Setup.WindowReach * more));
+  result.BoxLow = hn::Sub(reach.Place[axis], hn::Add(box, Const(walk.Setup.JitterUp * more)));
+  result.BoxHigh = hn::Add(reach.Place[axis], hn::Add(box, Const(walk.Setup.JitterDown * more)));
+  return result;
+}
+
+/// s²/2 on an interval, times a factor: its least and greatest value.
+STAGE_INLINE void GetSag(V factor, V low, V high, V& least, V& greatest)
+{
+  const V half = hn::Mul(Const(0.5f), factor);
+  const V first = hn::Mul(hn::Mul(low, low), half);
+  const V last = hn::Mul(hn::Mul(high, high), half);
+  const V turn =
+    hn::IfThenElse(hn::Lt(hn::Mul(low, high), hn::Zero(DF())), hn::Zero(DF()), first);
+  least = hn::Min(hn::Min(first, last), turn);
+  greatest = hn::Max(hn::Max(first, last), turn);
+}
+
+/// Leaves of [low, high] the s at which the index of that axis can be `index`.
+template <int N, class Walk>
+STAGE_INLINE void Narrow(const Walk& walk, const Reach<N>& reach, int number,
+  const IndexAxis& axis, V index, V& low, V& high)
+{
+  const V offset = hn::Sub(index, hn::Sub(reach.Place[number], Const(walk.Setup.JitterMiddle)));
+  V least = hn::Zero(DF());
+  V greatest = hn::Zero(DF());
+  for (int round = 0; round < (walk.Setup.Curved ? 2 : 1); ++round)
+  {
+    if (walk.Setup.Curved)
+    {
+      GetSag(axis.Bend, low, high, least, greatest);
+    }
+    const V a = hn::Mul(hn::Sub(hn::Sub(offset, axis.Width), greatest), axis.InverseAlong);
+    const V b = hn::Mul(hn::Sub(hn::Add(offset, axis.Width), least), axis.InverseAlong);
+    low = hn::Max(low, hn::Min(a, b));
+    high = hn::Min(high, hn::Max(a, b));
+  }
+}
+
+/// Indices that the reach has for s in [low, high]; none if that is empty.
+template <int N, class Walk>
+STAGE_INLINE void GetRange(const Walk& walk, const Reach<N>& reach, int number,
+  const IndexAxis& axis, V low, V high, V& first, V& last)
+{
+  first = axis.BoxLow;
+  last = axis.BoxHigh;
+  if (walk.Params.AnisotropicWeight)
+  {
+    V least = hn::Zero(DF());
+    V greatest = hn::Zero(DF());
+    if (walk.Setup.Curved)
+    {
+      GetSag(axis.Bend, low, high, least, greatest);
+    }
+    const V a = hn::Mul(low, axis.Along);
+    const V b = hn::Mul(high, axis.Along);
+    const V place = hn::Sub(reach.Place[number], Const(walk.Setup.JitterMiddle));
+    first = hn::Max(first, hn::Add(place, hn::Sub(hn::Add(hn::Min(a, b), least), axis.Width)));
+    last = hn::Min(last, hn::Add(place, hn::Add(hn::Add(hn::Max(a, b), greatest), axis.Width)));
+  }
+  first = hn::Ceil(first);
+  last = hn::IfThenElse(hn::Gt(low, high), Const(-1e9f), hn::Floor(last));
+}
+
+/**
+ * Interval of a register of rows. The surflet is cut into sections along the flow. In each the
+ * parabola is close to a line, so that what the ellipsoid around it leaves of the row is a
+ * quadratic's. With W the half-width, L the half-length, and e and a what t and s can be off, |t|
+ * <= W √(1 - (|s| - a)²/L²) + e implies, by (x + y)² <= (1 + d) x² + (1 + 1/d) y² with d = e/W and
+ * d = a/L,
+ *
+ *   t² + W (W + e) s² / (L (L + a)) <= (W + e)² + W (W + e) a / L.
+ */
+template <int N, class Walk>
+STAGE_INLINE void CutRows(
+  const Walk& walk, const Reach<N>& reach, V rowY, V rowZ, V& low, V& high)
+{
+  V row[N];
+  V index[N];
+  index[0] = hn::Neg(reach.Place[0]);
+  index[1] = hn::Sub(rowY, reach.Place[1]);
+  if constexpr (N == 3)
+  {
+    index[2] = hn::Sub(rowZ, reach.Place[2]);
+  }
+  ToPlace(walk, index, row);
+  // s and the part t across the flow at the beginning of the row, and their changes along it.
+  V step[N];
+  for (int i = 0; i < N; ++i)
+  {
+    row[i] = hn::Add(row[i], Const(walk.Setup.JitterMiddle));
+    step[i] = Const(walk.Setup.LatticeSteps[i][0]);
+  }
+  const V s0 = Dot(row, reach.U);
+  const V se = Dot(step, reach.U);
+  V t0[AxesAcross<N>];
+  V te[AxesAcross<N>];
+  V bend[AxesAcross<N>];
+  ToAcross<N>(row, reach.U, t0);
+  ToAcross<N>(step, reach.U, te);
+  ToAcross<N>(reach.Bend, reach.U, bend);
+  const V inverse = Inverse(se);
+  const V radius = Const(walk.Setup.JitterRadius);
+  const V length = hn::Add(reach.Length, radius);
+  const V offAlong = hn::Add(reach.AlongReach, radius);
+  const V looseness = GetLooseness(walk, reach);
+  const V overLength = hn::Mul(offAlong, reach.InverseLength);
+  // 1 / (L (L + a))
+  const V tapers = reach.Tapers
+    ? hn::Mul(reach.InverseLength, hn::Div(reach.InverseLength, hn::Add(Const(1.0f), overLength)))
+    : hn::Zero(DF());
+  const int sections = walk.Setup.Curved ? reach.Sections : 1;
+  const V section = hn::Mul(length, Const(2.0f / static_cast<float>(sections)));
+  const V offParabola = hn::Mul(hn::Mul(section, section), Const(1.0f / 16.0f));
+
+  V least = Const(1e9f);
+  V most = Const(-1e9f);
+  V begin = hn::Neg(length);
+  V beginX = hn::Mul(hn::Sub(begin, s0), inverse);
+  for (int i = 0; i < sections; ++i)
+  {
+    const V end = hn::Add(begin, section);
+    const V endX = hn::Mul(hn::Sub(end, s0), inverse);
+    const V farthest = hn::Add(hn::Max(hn::Abs(begin), hn::Abs(end)), radius);
+    V off = hn::Add(Quadratic(reach.Across, farthest), looseness);
+    off = hn::Add(off, Const(1e-3f));
+    V t[AxesAcross<N>];
+    V change[AxesAcross<N>];
+    std::copy(t0, t0 + AxesAcross<N>, t);
+    std::copy(te, te + AxesAcross<N>, change);
+    if (walk.Setup.Curved)
+    {
+      // s²/2 is between m s - begin end/2 and (end - begin)²/8 less, m the middle.
+      off = hn::MulAdd(offParabola, reach.BendLength, off);
+      const V middle = hn::Mul(Const(0.5f), hn::Add(begin, end));
+      const V chord = hn::MulSub(middle, s0, hn::Mul(Const(0.5f), hn::Mul(begin, end)));
+      const V sag = hn::Sub(chord, offParabola);
+      const V sagChange = hn::Mul(middle, se);
+      for (int axis = 0; axis < AxesAcross<N>; ++axis)
+      {
+        t[axis] = hn::NegMulAdd(sag, bend[axis], t[axis]);
+        change[axis] = hn::NegMulAdd(sagChange, bend[axis], change[axis]);
+      }
+    }
+    const V width = hn::Add(reach.HalfWidth, off);
+    const V both = hn::Mul(reach.HalfWidth, width);
+    const V taper = hn::Mul(both, tapers);
+    const V limit =
+      hn::MulAdd(both, reach.Tapers ? overLength : hn::Zero(DF()), hn::Mul(width, width));
+    // A row along a streak that does not taper: what the clamped coefficient adds must not count.
+    V A = hn::MulAdd(hn::Mul(taper, se), se, Dot(change, change));
+    const V B = hn::MulAdd(hn::Mul(taper, s0), se, Dot(t, change));
+    V C = hn::Sub(hn::MulAdd(hn::Mul(taper, s0), s0, Dot(t, t)), limit);
+    if (!reach.Tapers)
+    {
+      const V clamped = hn::Max(A, Const(1e-6f));
+      C = hn::NegMulAdd(hn::Sub(clamped, A), Const(1e6f), C);
+      A = clamped;
+    }
+    const V discriminant = hn::NegMulAdd(A, C, hn::Mul(B, B));
+    const V inverseA = hn::Div(Const(1.0f), A);
+    const V root = hn::Sqrt(hn::Max(discriminant, hn::Zero(DF())));
+    const V first = hn::Max(hn::Min(beginX, endX), hn::Mul(hn::Neg(hn::Add(B, root)), inverseA));
+    const V last = hn::Min(hn::Max(beginX, endX), hn::Mul(hn::Sub(root, B), inverseA));
+    const auto some = hn::And(
+      hn::Le(first, hn::Add(last, Const(2e-3f))), hn::Ge(discriminant, hn::Zero(DF())));
+    least = hn::IfThenElse(some, hn::Min(least, first), least);
+    most = hn::IfThenElse(some, hn::Max(most, last), most);
+    begin = end;
+    beginX = endX;
+  }
+  const V slack = hn::Add(reach.RowSpread, Const(1e-3f));
+  low = hn::Max(low, hn::Sub(least, slack));
+  high = hn::Min(high, hn::Add(most, slack));
+}
+} // namespace HWY_NAMESPACE
+} // namespace steerable
+HWY_AFTER_NAMESPACE();
+
+#endif

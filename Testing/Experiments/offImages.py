@@ -146,9 +146,9 @@ def ask(server, name, which):
     return 1e-6 * points / clock, 1e-6 * points / processor
 
 
-if sys.argv[1:] == ["--serve"]:
-    serve()
-else:
+def main():
+    if sys.argv[1:] == ["--serve"]:
+        return serve()
     servers = [start(build) for build in sys.argv[1:] or [None]]
     for name, changes in MESHES.items():
         rates = {(server, which): [] for server in servers for which in changes}
@@ -160,3 +160,7 @@ else:
             medians = [[statistics.median(column) for column in zip(*rates[server, which])] for server in servers]
             print("%-11s %-7s" % (name, which), "; ".join("%.2f by the clock, %.2f of the processor" % tuple(m) for m in medians),
                   "" if len(servers) < 2 else "ratio %.1f, %.1f" % tuple(medians[-1][i] / medians[0][i] for i in (0, 1)))
+
+
+if __name__ == "__main__":
+    main()

@@ -10,8 +10,10 @@ Every figure is of a process of its own (pvpython, or 1 to 3 ranks of pvbatch th
 processor, of all threads, and the peak of memory above what was there before the update; "next" changes the
 Seed alone. FeatureSize is 12 spacings, everything else its default. LARGEST: number of points, 10^7.
 """
+import ctypes
 import json
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -30,6 +32,7 @@ def memory(entry):
 
 
 def reset_peak():
+    ctypes.CDLL("libc.so.6").malloc_trim(0)  # or freed memory would be filled before the process grows
     with open("/proc/self/clear_refs", "w") as refs:
         refs.write("5")
 
@@ -108,7 +111,9 @@ def update(noise):
     reset_peak()
     before, started = memory("VmRSS"), processor()
     noise.Update()
-    return processor() - started, memory("VmHWM") - before, memory("VmRSS") - before
+    seconds, peak = processor() - started, memory("VmHWM") - before
+    reset_peak()
+    return seconds, peak, memory("VmRSS") - before
 
 
 def measure(kind, count):
@@ -164,7 +169,7 @@ def run(build, command, *arguments):
                        PYTHONPATH=os.path.join(build, "lib", "python3", "dist-packages"))
     words = command + [os.path.abspath(__file__)] + [str(argument) for argument in arguments]
     done = subprocess.run(words, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    found = [json.loads(line.split(" ", 1)[1]) for line in done.stdout.splitlines() if line.startswith("measured ")]
+    found = [json.loads(entry) for entry in re.findall("measured ({.*?})", done.stdout)]  # of several ranks on one line
     if not found:
         print("nothing measured:", words, done.stderr[-500:], file=sys.stderr)
         return None
@@ -208,8 +213,7 @@ def plot(picture):
         rows = json.load(table)
     figure, (time, bytes_) = pyplot.subplots(1, 2, figsize=(10, 4), layout="constrained")
     for color, kind in zip(("C0", "C1", "C2"), KINDS):
-        of_kind = [row for row in rows if row["kind"] == kind and not row.get("batch")]
-        seen = {row["points"]: row for row in reversed(of_kind) if row["ranks"] == 1}
+        seen = {row["points"]: row for row in reversed(rows) if row["kind"] == kind and row["ranks"] == 1}
         sizes = sorted(seen)
         for entry, line in (("first", "-o"), ("next", "--s")):
             time.loglog(sizes, [1e6 * seen[n][entry] / n for n in sizes], line, color=color, label="%s, %s" % (kind, entry))
@@ -217,6 +221,7 @@ def plot(picture):
         bytes_.semilogx(sizes, [max(seen[n]["left"], 0) / n for n in sizes], "--s", color=color, label=kind + ", left")
     time.set_ylabel("processor, µs per point")
     bytes_.set_ylabel("memory, bytes per point")
+    time.set_ylim(top=40.0)  # room for the legend
     bytes_.set_ylim(bottom=0)
     for axes in (time, bytes_):
         axes.set_xlabel("points")

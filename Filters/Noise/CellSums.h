@@ -131,8 +131,8 @@ public:
   void AddCells(bool lines, GetShares&& getShares)
   {
     // So many that threads are worth it, so few that their shares take little memory.
-    constexpr vtkIdType chunkSize = 512;
-    constexpr vtkIdType chunksPerBatch = 64;
+    constexpr vtkIdType chunkSize = 128;
+    constexpr vtkIdType chunksPerBatch = 32;
     const vtkIdType cells = this->DataSet->GetNumberOfCells();
     const auto points = static_cast<vtkIdType>(this->Counts.size());
     const vtkIdType threads =

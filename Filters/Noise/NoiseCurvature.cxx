@@ -217,17 +217,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
 {
   const CellDimensions dimensions(dataset);
   const PointPlaces places(dataset);
-  const vtkIdType count = dataset->GetNumberOfPoints();
-  std::vector<Vector3d> directions(static_cast<std::size_t>(count));
-  vtkSMPTools::For(0, count, 4096,
-    [&](vtkIdType begin, vtkIdType end)
-    {
-      for (vtkIdType point = begin; point < end; ++point)
-      {
-        directions[static_cast<std::size_t>(point)] = GetDirection(vectors, point);
-      }
-    });
-  auto curvature = NewOutputArray("Curvature", 3, count);
+  auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfPoints());
   // The noise takes bends up to 1 / cellSize: room for 127 cells of such, and finer than it sees.
   PointSums sums(dataset, curvature, cellSize * (1 << 24));
   sums.AddCells(false,
@@ -242,7 +232,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
       thread_local CellPoints cell;
       const std::size_t part = GetPartSize(type);
       ReadCell(dataset, places, id, Vector3d::Zero(), part > 0, ids, cell,
-        [&](vtkIdType point) -> const Vector3d& { return directions[static_cast<std::size_t>(point)]; });
+        [&](vtkIdType point) { return GetDirection(vectors, point); });
       const std::size_t size = part > 0 ? part : std::max<std::size_t>(cell.Ids.size(), 2);
       for (std::size_t first = 0; first + size <= cell.Ids.size(); ++first)
       {

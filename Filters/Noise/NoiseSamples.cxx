@@ -274,6 +274,10 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
     return nullptr;
   }
   const PointPlaces places(this->DataSet);
+  if (!this->Cells)
+  {
+    this->GetCopies(); // before the array: it takes memory for a while
+  }
   auto normals = NewOutputArray("Normals", 3, this->GetNumberOfSamples());
   // The dataset's own normals where it has them; their sense does not matter.
   vtkDataSetAttributes* attributes = this->Cells
@@ -703,12 +707,12 @@ class NearestPoints
 {
 public:
   explicit NearestPoints(vtkDataSet* dataset)
-    : DataSet(dataset)
+    : Places(dataset)
   {
     Eigen::AlignedBox3d box;
     for (vtkIdType point = 0; point < dataset->GetNumberOfPoints(); ++point)
     {
-      const Eigen::Vector3d place = this->GetPlace(point);
+      const Eigen::Vector3d place = this->Places(point);
       if (place.allFinite())
       {
         box.extend(place);
@@ -729,7 +733,7 @@ public:
     places->SetDataTypeToDouble();
     for (const vtkIdType point : this->Points)
     {
-      places->InsertNextPoint(this->Normalize(this->GetPlace(point)).data());
+      places->InsertNextPoint(this->Normalize(this->Places(point)).data());
     }
     this->Normalized->SetPoints(places);
     this->Locator->SetDataSet(this->Normalized);
@@ -739,7 +743,7 @@ public:
   /// 0 if there is none.
   double GetDistance(vtkIdType point)
   {
-    const Eigen::Vector3d place = this->GetPlace(point);
+    const Eigen::Vector3d place = this->Places(point);
     if (!place.allFinite() || this->Points.empty())
     {
       return 0.0;
@@ -747,7 +751,7 @@ public:
     this->Locator->FindClosestNPoints(8, this->Normalize(place).data(), this->Near);
     for (const vtkIdType other : *this->Near)
     {
-      const double distance = (this->GetPlace(this->Points[other]) - place).norm();
+      const double distance = (this->Places(this->Points[other]) - place).norm();
       if (std::isfinite(distance) && distance > 0.0)
       {
         return distance;
@@ -757,19 +761,12 @@ public:
   }
 
 private:
-  Eigen::Vector3d GetPlace(vtkIdType point) const
-  {
-    Eigen::Vector3d place;
-    this->DataSet->GetPoint(point, place.data());
-    return place;
-  }
-
   Eigen::Vector3d Normalize(const Eigen::Vector3d& place) const
   {
     return (place / 2.0 - this->Origin) / this->Unit;
   }
 
-  vtkDataSet* DataSet;
+  PointPlaces Places;
   /// Those that have a place.
   std::vector<vtkIdType> Points;
   Eigen::Vector3d Origin;

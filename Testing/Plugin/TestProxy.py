@@ -51,7 +51,8 @@ for name, proxy in XML.items():
         # The C++ class clamps to the XML's range.
         for domain in list(prop.iter("DoubleRangeDomain")) + list(prop.iter("IntRangeDomain")):
             for bound, beyond in (("min", -1e6), ("max", 1e6)):
-                if domain.get(bound) is None or len(expected) > 1 or key == "Phase":
+                # A phase goes around; a size that is negative is refused.
+                if domain.get(bound) is None or len(expected) > 1 or key in ("Phase", "FeatureSize"):
                     continue
                 convert = int if prop.tag.startswith("Int") else float
                 getattr(algorithm, "Set" + key)(convert(beyond))

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The order in which the kernel takes points (private to this module): those of a tile share what they need of the
- * lattice where they lie together, and points of a mesh may come in any order.
+ * The order in which the kernel takes points (private to this module): those of a tile share what
+ * they need of the lattice where they lie together, and points of a mesh may come in any order.
  */
 #ifndef NoiseOrder_h
 #define NoiseOrder_h
@@ -16,19 +16,20 @@
 namespace noise
 {
 /**
- * Indices of places along a Morton curve, where the order they have is much worse than that: successive ones are
- * far apart. Else empty. `bounds` as VTK has them; `dimension` 2: the places lie on surfaces, 3: in a volume.
- * Uses threads.
+ * Indices of places along a Morton curve, where the order they have is much worse than that:
+ * successive ones are far apart. Else empty. `bounds` as VTK has them; `dimension` 2: the places lie
+ * on surfaces, 3: in a volume. Uses threads.
  */
-std::vector<std::uint32_t> FindOrder(const steerable::TupleReader<double>& places, std::size_t count,
-  const double (&bounds)[6], int dimension);
+std::vector<std::uint32_t> FindOrder(const steerable::TupleReader<double>& places,
+  std::size_t count, const double (&bounds)[6], int dimension);
 
 /// Tuples in another order: the tuple i is that of `order[i]`.
 template <typename T>
 class ReorderedReader : public steerable::TupleReader<T>
 {
 public:
-  ReorderedReader(const steerable::TupleReader<T>& reader, int components, const std::uint32_t* order)
+  ReorderedReader(
+    const steerable::TupleReader<T>& reader, int components, const std::uint32_t* order)
     : Reader(reader)
     , Components(components)
     , Order(order)
@@ -55,7 +56,7 @@ private:
   const std::uint32_t* Order;
 };
 
-/// SteerableNoise::EvaluatePoints of the points order[begin] to order[end - 1], with the same values.
+/// EvaluatePoints of the points order[begin] to order[end - 1], with the same values.
 steerable::EvaluationCounts EvaluateInOrder(const steerable::SteerableNoise& kernel,
   const steerable::TupleReader<double>& positions, const steerable::Field& field,
   const std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end, float* noise);

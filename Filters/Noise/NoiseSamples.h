@@ -32,7 +32,8 @@ class CoincidentPoints;
 
 /**
  * What samples off images know of their geometry and field, to be kept from one update to the next while both stay
- * the same: 24 bytes for each sample on a surface, 12 in a volume, 4 more where samples are badly ordered.
+ * the same: 24 bytes for each sample on a surface, 12 in a volume, 4 more where samples are badly
+ * ordered.
  */
 struct SampleFields
 {

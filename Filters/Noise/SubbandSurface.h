@@ -54,8 +54,8 @@ struct SurfaceSums
   double operator[](Entry entry) const { return this->Values[entry]; }
   SurfaceSums& operator+=(const SurfaceSums& other)
   {
-    std::transform(this->Values.begin(), this->Values.end(), other.Values.begin(), this->Values.begin(),
-      std::plus<>());
+    std::transform(this->Values.begin(), this->Values.end(), other.Values.begin(),
+      this->Values.begin(), std::plus<>());
     return *this;
   }
   double* Smaller() { return this->Values.data() + EntryCount; }

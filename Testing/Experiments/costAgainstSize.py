@@ -179,10 +179,11 @@ def run(build, command, *arguments):
         if entry in row:
             row[entry] = sum(part[entry] for part in found)
     row["ranks"] = len(found)
-    print("%-10s %9d points, %d rank(s), %2d piece(s): " % (row["kind"], row["points"], row["ranks"], row.get("pieces", 1)) +
-          ", ".join("%s %.3f us" % (entry, 1e6 * row[entry] / row["points"]) for entry in ("first", "next") if entry in row) +
-          ", " + ", ".join("%s %.1f bytes" % (entry, row[entry] / row["points"]) for entry in ("peak", "left") if entry in row) +
-          (", asked for %d" % row["asked"] if "asked" in row else ""), flush=True)
+    figures = ["%s %.3f us" % (entry, 1e6 * row[entry] / row["points"]) for entry in ("first", "next") if entry in row]
+    figures += ["%s %.1f bytes" % (entry, row[entry] / row["points"]) for entry in ("peak", "left") if entry in row]
+    figures += ["asked for %d" % row["asked"]] if "asked" in row else []
+    print("%-10s %9d points, %d rank(s), %2d piece(s): " %
+          (row["kind"], row["points"], row["ranks"], row.get("pieces", 1)) + ", ".join(figures), flush=True)
     return row
 
 

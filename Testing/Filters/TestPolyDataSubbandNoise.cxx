@@ -254,6 +254,7 @@ TEST(PolyDataSubbandNoise, Defaults)
   EXPECT_STREQ(filter->GetResultArrayName(), "SubbandNoise");
   EXPECT_FALSE(filter->GetOutputWeights());
   EXPECT_FALSE(filter->GetOutputDistortion());
+  EXPECT_TRUE(filter->GetKeepFields());
 }
 
 TEST(PolyDataSubbandNoise, AddsOneActiveFloatArrayAndPassesTheRest)

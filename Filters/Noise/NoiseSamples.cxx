@@ -7,6 +7,7 @@
 #include "NoiseCells.h"
 #include "NoiseCopies.h"
 #include "NoiseCurvature.h"
+#include "NoiseOrder.h"
 #include "NoiseThreads.h"
 #include "PointPlaces.h"
 
@@ -539,11 +540,29 @@ vtkSmartPointer<vtkFloatArray> Samples::FindCurvature(double featureSize)
     dimensions, *this->Positions, *this->Field.Vectors, this->LeftOut, cellsMeet);
 }
 
+void Samples::FindOrder()
+{
+  if (this->TakenAs.IsGrid || this->Fields->IsOrderKnown)
+  {
+    return;
+  }
+  double bounds[6];
+  this->DataSet->GetBounds(bounds);
+  this->Fields->Order = noise::FindOrder(*this->Positions,
+    static_cast<std::size_t>(this->GetNumberOfSamples()), bounds, this->Fields->Normals ? 2 : 3);
+  this->Fields->IsOrderKnown = true;
+}
+
 steerable::EvaluationCounts Samples::Evaluate(
   const steerable::SteerableNoise& kernel, std::size_t begin, std::size_t end, float* noise) const
 {
-  return this->TakenAs.IsGrid ? kernel.EvaluateImage(this->Grid, this->Field, begin, end, noise)
-                      : kernel.EvaluatePoints(*this->Positions, this->Field, begin, end, noise);
+  if (this->TakenAs.IsGrid)
+  {
+    return kernel.EvaluateImage(this->Grid, this->Field, begin, end, noise);
+  }
+  return this->Fields->Order.empty()
+    ? kernel.EvaluatePoints(*this->Positions, this->Field, begin, end, noise)
+    : EvaluateInOrder(kernel, *this->Positions, this->Field, this->Fields->Order, begin, end, noise);
 }
 
 namespace

@@ -16,6 +16,7 @@
 
 #include <Eigen/Core>
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -31,7 +32,8 @@ class CoincidentPoints;
 
 /**
  * What samples off images know of their geometry and field, to be kept from one update to the next while both stay
- * the same: 24 bytes for each sample on a surface, 12 in a volume.
+ * the same: 24 bytes for each sample on a surface, 12 in a volume, 4 more where samples are badly
+ * ordered.
  */
 struct SampleFields
 {
@@ -40,6 +42,9 @@ struct SampleFields
   /// The FeatureSize whose steps the curvature has; 0: there is none yet.
   double CurvatureSize = 0.0;
   vtkSmartPointer<vtkFloatArray> Curvature;
+  bool IsOrderKnown = false;
+  /// In which the kernel takes samples, if not in theirs.
+  std::vector<std::uint32_t> Order;
 };
 
 class Samples
@@ -76,6 +81,9 @@ public:
 
   /// Curvature of the streamlines, where the kernel does not find it itself; of noise with this FeatureSize.
   void ComputeCurvature(double featureSize);
+
+  /// Has samples evaluated in another order than theirs where that is faster, with the same values.
+  void FindOrder();
 
   /// Why a sample has no direction and lends none to its neighbours; it gets isotropic noise.
   enum WhyLeftOut : unsigned char

@@ -24,6 +24,12 @@ void SubbandSeams::Add(const SubbandSurface& surface)
 }
 
 //------------------------------------------------------------------------------
+void SubbandSeams::Add(const SubbandSeams& other)
+{
+  this->Places.insert(this->Places.end(), other.Places.begin(), other.Places.end());
+}
+
+//------------------------------------------------------------------------------
 void SubbandSeams::Gather(vtkMultiProcessController* controller)
 {
   const int ranks = controller ? controller->GetNumberOfProcesses() : 1;

@@ -23,6 +23,11 @@ public:
   /// Adds the points of a surface that lie on its seams.
   void Add(const SubbandSurface& surface);
 
+  void Add(const SubbandSeams& other);
+
+  /// The places, in no order to rely on before Build().
+  const std::vector<Eigen::Vector3d>& GetPlaces() const { return this->Places; }
+
   /// Adds those of all ranks; they do this together.
   void Gather(vtkMultiProcessController* controller);
 

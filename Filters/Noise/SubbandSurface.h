@@ -11,7 +11,9 @@
 
 #include "vtkType.h"
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <vector>
 
 class vtkDataArray;
@@ -50,6 +52,12 @@ struct SurfaceSums
 
   double& operator[](Entry entry) { return this->Values[entry]; }
   double operator[](Entry entry) const { return this->Values[entry]; }
+  SurfaceSums& operator+=(const SurfaceSums& other)
+  {
+    std::transform(this->Values.begin(), this->Values.end(), other.Values.begin(),
+      this->Values.begin(), std::plus<>());
+    return *this;
+  }
   double* Smaller() { return this->Values.data() + EntryCount; }
   double* Larger() { return this->Values.data() + EntryCount + Bins; }
   const double* Smaller() const { return this->Values.data() + EntryCount; }

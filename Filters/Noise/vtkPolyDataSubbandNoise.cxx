@@ -38,6 +38,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -61,18 +62,25 @@ constexpr double FarOctavesOutside = 0.25;
 constexpr double PointsPerWavelength = 8.0;
 // A projection with less of the blend's power than this does not show.
 constexpr double VisibleBlend = 0.1;
-// Points whose weights are held at a time.
+// Points that are evaluated together.
 constexpr vtkIdType ChunkSize = 256;
+// Octaves whose weights are kept; finer ones fade on most meshes, and each takes four bytes a band.
+constexpr std::size_t MostKeptOctaves = 4;
 using steerable::MostSubbandComponents;
+
+struct KeptSurface;
 
 /// A surface of the output that gets noise.
 struct Block
 {
   vtkPolyData* Mesh = nullptr;
+  /// The input's, of which it is a shallow copy.
+  vtkDataObject* Source = nullptr;
+  KeptSurface* Known = nullptr;
   vtkDataArray* Texture = nullptr; // null: planar projections
   vtkDataArray* Vectors = nullptr;
   bool CellVectors = false;
-  std::unique_ptr<SubbandSurface> Surface;
+  std::unique_ptr<SubbandSurface> Surface; // made where what is kept does not do
   vtkDataArray* Wavelengths = nullptr; // null: the same at all points
   vtkDataArray* Anisotropies = nullptr;
 };
@@ -349,376 +357,6 @@ private:
   std::map<int, steerable::SubbandTiles> Realizations;
   std::vector<steerable::SubbandTiles> Planes;
 };
-} // namespace
-
-struct vtkPolyDataSubbandNoise::Internals
-{
-  TileCache TextureTiles;
-  TileCache PlaneTiles;
-  TileCache SeamTiles; // of planes that take over from a texture
-
-  /// How long features become, tabulated anew only for other parameters: that takes some 20 ms.
-  const steerable::SubbandAnisotropy* GetAnisotropy(int orientations, steerable::WeightMethod method)
-  {
-    if (!this->Anisotropy || orientations != this->AnisotropyOrientations ||
-      method != this->AnisotropyMethod)
-    {
-      this->Anisotropy = std::make_unique<steerable::SubbandAnisotropy>(orientations, method);
-      this->AnisotropyOrientations = orientations;
-      this->AnisotropyMethod = method;
-    }
-    return this->Anisotropy.get();
-  }
-
-private:
-  std::unique_ptr<steerable::SubbandAnisotropy> Anisotropy;
-  int AnisotropyOrientations = 0;
-  steerable::WeightMethod AnisotropyMethod = steerable::WeightMethod::None;
-};
-
-namespace
-{
-/// What points are looked up in and weighted with on the texture or in a planar projection.
-struct Lookup
-{
-  const Layout* Lay;
-  const steerable::SubbandWeights* Weights;
-  const steerable::SubbandTiles* Tiles;
-};
-
-/// What the points of all blocks with one kind of lookups are evaluated with.
-struct Evaluator
-{
-  /// The texture's, or those of three planes, or all four where planes take over at seams.
-  std::vector<Lookup> Lookups;
-  double Wavelength;
-  double Anisotropy;
-  int Octaves;
-  double Persistence;
-  bool Turbulence;
-  bool AntiAlias;
-  std::uint32_t Seed;
-
-  /// Output arrays; all but the first may be null.
-  float* Noise = nullptr;
-  float* WeightArray = nullptr;
-  float* Distortion = nullptr;
-  /// Weights of the user's own, one tuple a point of all planes' bands; null: those of the metric.
-  vtkDataArray* OwnWeights = nullptr;
-  /// Of each octave and orientation, orientation fastest; null: all 1.
-  vtkDataArray* Factors = nullptr;
-  /// Wavelength and Anisotropy of each point; null: those of all, the latter what SteeredFeature takes.
-  vtkDataArray* WavelengthArray = nullptr;
-  vtkDataArray* AnisotropyArray = nullptr;
-  const steerable::SubbandAnisotropy* Scale = nullptr; // null: Method None
-  /// The property, where the array of anisotropies has no value.
-  double Wanted = 1.0;
-  /// Where planes take over from the texture; null: nowhere.
-  const noise::SubbandSeams* Seams = nullptr;
-  /// All of an image counts, with its residuals, whatever the metric.
-  bool WholeImage = false;
-  /// Antialiased weights are held at the variance of noise: not those that are no noise's.
-  bool Limited = true;
-
-  double GetWavelength(vtkIdType point) const
-  {
-    return WavelengthAt(this->WavelengthArray, point, this->Wavelength);
-  }
-  double GetSteering(vtkIdType point) const
-  {
-    if (!this->AnisotropyArray)
-    {
-      return this->Anisotropy;
-    }
-    const double wanted = AnisotropyAt(this->AnisotropyArray, point, this->Wanted);
-    return this->Scale ? this->Scale->GetSteering(wanted) : wanted;
-  }
-
-  // The points of a chunk that one set of tiles contributes to.
-  struct Plane
-  {
-    std::vector<vtkIdType> Points; // within the chunk
-    std::vector<Eigen::Vector2d> Texture;
-    std::vector<double> Gamma;
-    std::vector<double> Blends; // of the tiles of several planes
-    std::vector<Eigen::Matrix2d> Footprints;
-
-    void Clear()
-    {
-      this->Points.clear();
-      this->Texture.clear();
-      this->Gamma.clear();
-      this->Blends.clear();
-      this->Footprints.clear();
-    }
-  };
-
-  /// Where the weights of a lookup begin in a tuple of all; of one after the last: their number.
-  int GetFirstComponent(std::size_t lookup) const
-  {
-    int first = 0;
-    for (std::size_t l = 0; l < lookup; ++l)
-    {
-      first += this->Lookups[l].Tiles->Components();
-    }
-    return first;
-  }
-
-  /// Adds a point with this metric, in squared repeats of the tile; tells whether it was clamped.
-  bool AddPoint(std::vector<Plane>& planes, std::size_t which, vtkIdType point,
-    const Eigen::Vector2d& texture, const Eigen::Matrix2d& metric,
-    const Eigen::Matrix2d& footprint, double blend, PointCounts& counts, vtkIdType first) const
-  {
-    Plane& plane = planes[which];
-    const Lookup& lookup = this->Lookups[which];
-    const int components = lookup.Tiles->Components();
-    double gamma[MostSubbandComponents];
-    std::fill(gamma + lookup.Lay->Pyramid.Components(), gamma + components, 0.0);
-    if (!texture.allFinite() || !lookup.Weights->Compute(metric, gamma))
-    {
-      return false;
-    }
-    if (this->WholeImage)
-    {
-      std::fill_n(gamma, components, 1.0);
-    }
-    if (this->OwnWeights)
-    {
-      const int offset = this->GetFirstComponent(which);
-      for (int c = 0; c < components; ++c)
-      {
-        const double own = this->OwnWeights->GetComponent(first + point, offset + c);
-        gamma[c] = std::isfinite(own) ? own / blend : 0.0;
-      }
-    }
-    plane.Points.push_back(point);
-    plane.Texture.push_back(texture);
-    plane.Footprints.push_back(footprint);
-    plane.Blends.push_back(blend);
-    for (int c = 0; c < components; ++c)
-    {
-      plane.Gamma.push_back(blend * gamma[c]);
-    }
-    Eigen::Matrix2d clamped = metric;
-    if (lookup.Weights->GetParameters().Method == steerable::WeightMethod::None ||
-      this->WholeImage || blend * blend < VisibleBlend || !lookup.Weights->ClampMetric(clamped))
-    {
-      return false;
-    }
-    // The range of the factors, from the range of eigenvalues.
-    const steerable::SubbandParameters& pyramid = lookup.Lay->Pyramid;
-    const double smallest = std::pow(pyramid.CenterFrequency(), -2.0);
-    const double largest = std::ldexp(smallest, 2 * (pyramid.Scales - 1));
-    const double mean = 0.5 * metric.trace();
-    const double radius = std::hypot(0.5 * (metric(0, 0) - metric(1, 1)), metric(0, 1));
-    const double low = std::max(mean - radius, 1e-12 * mean);
-    const double coarser = std::sqrt(smallest / low);
-    const double finer = std::sqrt((mean + radius) / largest);
-    counts.Coarser = std::max(counts.Coarser, coarser);
-    counts.Finer = std::max(counts.Finer, finer);
-    return std::max(coarser, finer) > std::exp2(ClampedOctaves);
-  }
-
-  PointCounts Evaluate(const Block& block, const noise::SteeringVectors& vectors,
-    vtkUnsignedCharArray* ghosts, vtkIdType begin, vtkIdType end) const
-  {
-    PointCounts counts;
-    std::vector<Plane> planes(this->Lookups.size());
-    for (vtkIdType first = begin; first < end; first += ChunkSize)
-    {
-      const vtkIdType last = std::min(first + ChunkSize, end);
-      for (Plane& plane : planes)
-      {
-        plane.Clear();
-      }
-      for (vtkIdType point = first; point < last; ++point)
-      {
-        PointCounts here;
-        here.Points = 1;
-        if (block.Texture)
-        {
-          this->AddTextured(*block.Surface, vectors, point, first, planes, here);
-        }
-        else
-        {
-          this->AddProjected(*block.Surface, vectors, point, first, planes, 1.0, here);
-        }
-        if (!ghosts || !ghosts->GetValue(point))
-        {
-          counts += here;
-        }
-      }
-      this->SumOctaves(planes, first, last - first);
-    }
-    return counts;
-  }
-
-  void AddTextured(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
-    vtkIdType point, vtkIdType first, std::vector<Plane>& planes, PointCounts& counts) const
-  {
-    SubbandSurface::PointMetrics metrics;
-    const bool mapped = surface.ComputeTextured(point, vectors, this->GetSteering(point), metrics);
-    if (this->Distortion)
-    {
-      const double ratio = mapped ? steerable::DistortionRatio(metrics.Isotropic) : 0.0;
-      this->Distortion[point] = static_cast<float>(ratio);
-    }
-    double share = mapped ? 1.0 : 0.0;
-    if (this->Seams)
-    {
-      if (mapped)
-      {
-        const int orientations = this->Lookups[0].Lay->Pyramid.Orientations;
-        const double wavelength = this->GetWavelength(point);
-        share = steerable::TextureBlend(steerable::DistortionRatio(metrics.Isotropic),
-          steerable::FollowedStretch(orientations),
-          this->Seams->GetDistance(surface.GetPoint(point), wavelength) / wavelength);
-      }
-      if (share < 1.0)
-      {
-        this->AddProjected(
-          surface, vectors, point, first, planes, std::sqrt(1.0 - share * share), counts);
-      }
-    }
-    else if (!mapped)
-    {
-      counts.Unmapped = 1;
-    }
-    if (!(share > 0.0))
-    {
-      return;
-    }
-    counts.Undirected = vectors.Values && !metrics.Directed;
-    const double repeats = this->Lookups[0].Lay->Repeats;
-    const double scale = repeats * this->GetWavelength(point);
-    const bool clamped = this->AddPoint(planes, 0, point - first,
-      repeats * surface.GetTexture(point), metrics.Metric * (scale * scale),
-      metrics.Footprint * (repeats * repeats), share, counts, first);
-    counts.Clamped = counts.Clamped || clamped;
-  }
-
-  /// `share`: of the projections beside the texture, squares summing to one.
-  void AddProjected(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
-    vtkIdType point, vtkIdType first, std::vector<Plane>& planes, double share,
-    PointCounts& counts) const
-  {
-    SubbandSurface::PointFeatures features;
-    const bool mapped = surface.ComputeProjected(point, vectors, this->GetSteering(point), features);
-    if (this->Distortion && !surface.IsTextured())
-    {
-      this->Distortion[point] =
-        mapped ? static_cast<float>(1.0 / features.Normal.cwiseAbs().maxCoeff()) : 0.0f;
-    }
-    if (!mapped)
-    {
-      counts.Unmapped = 1;
-      return;
-    }
-    counts.Undirected = vectors.Values && !features.Directed;
-    const Eigen::Vector3d blend = share * steerable::TriplanarBlend(features.Normal);
-    const std::size_t firstPlane = surface.IsTextured() ? 1 : 0;
-    const double repeats = this->Lookups[firstPlane].Lay->Repeats;
-    const Eigen::Vector3d place = surface.GetPoint(point) * repeats;
-    const double wavelength = this->GetWavelength(point);
-    const Eigen::Matrix3d feature = features.Feature * (wavelength * wavelength);
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      if (blend[axis] > 0.0)
-      {
-        const steerable::TextureGradients gradients =
-          steerable::PlanarGradients(features.Normal, axis, 1.0 / repeats);
-        const Eigen::Vector2d texture(place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]);
-        const bool clamped = this->AddPoint(planes, firstPlane + axis, point - first, texture,
-          steerable::SurfaceMetric(gradients, feature),
-          gradients.transpose() * features.Spacing * gradients, blend[axis], counts, first);
-        counts.Clamped = counts.Clamped || clamped;
-      }
-    }
-  }
-
-  void SumOctaves(const std::vector<Plane>& planes, vtkIdType first, vtkIdType count) const
-  {
-    const vtkIdType tuple = this->GetFirstComponent(planes.size());
-    std::vector<double> uv;
-    std::vector<float> weights;
-    std::vector<float> values;
-    std::array<float, ChunkSize> sum{};
-    double amplitude = 1.0;
-    for (int octave = 0; octave < this->Octaves; ++octave, amplitude *= this->Persistence)
-    {
-      const double scale = std::ldexp(1.0, octave);
-      // Without a shift octaves would be copies of each other.
-      const std::array<double, 2> shift =
-        octave == 0 ? std::array<double, 2>{} : steerable::TileOffset(octave, this->Seed);
-      std::array<float, ChunkSize> noise{};
-      for (std::size_t which = 0; which < planes.size(); ++which)
-      {
-        const Plane& plane = planes[which];
-        const Lookup& lookup = this->Lookups[which];
-        const int bands = lookup.Lay->Pyramid.Components();
-        const int components = lookup.Tiles->Components();
-        const int offset = this->GetFirstComponent(which);
-        const std::size_t points = plane.Points.size();
-        uv.resize(2 * points);
-        weights.resize(components * points);
-        values.resize(points);
-        double beta[MostSubbandComponents];
-        for (std::size_t n = 0; n < points; ++n)
-        {
-          uv[2 * n] = scale * plane.Texture[n][0] + shift[0];
-          uv[2 * n + 1] = scale * plane.Texture[n][1] + shift[1];
-          std::fill_n(beta, components, 1.0);
-          if (this->AntiAlias)
-          {
-            const Eigen::Matrix2d footprint = plane.Footprints[n] * (scale * scale);
-            lookup.Weights->Antialias(footprint, beta);
-            if (components > bands)
-            {
-              lookup.Weights->AntialiasHigh(footprint, beta + bands);
-            }
-          }
-          for (int c = 0; c < components; ++c)
-          {
-            beta[c] *= plane.Gamma[n * components + c];
-          }
-          if (this->AntiAlias && this->Limited)
-          {
-            lookup.Weights->LimitVariance(plane.Blends[n] * plane.Blends[n], beta);
-          }
-          if (this->Factors)
-          {
-            const int orientations = lookup.Lay->Pyramid.Orientations;
-            // The low residual of an image has no orientation.
-            for (int c = 0; c < (components > bands ? components - 1 : components); ++c)
-            {
-              beta[c] *= this->Factors->GetComponent(
-                first + plane.Points[n], octave * orientations + c % orientations);
-            }
-          }
-          std::copy(beta, beta + components, weights.begin() + n * components);
-        }
-        steerable::SumSubbands(*lookup.Tiles, steerable::TileLookup::CatmullRom, points,
-          uv.data(), weights.data(), values.data());
-        for (std::size_t n = 0; n < points; ++n)
-        {
-          noise[plane.Points[n]] += values[n];
-          if (this->WeightArray && octave == 0)
-          {
-            std::copy_n(weights.data() + n * components, components,
-              this->WeightArray + (first + plane.Points[n]) * tuple + offset);
-          }
-        }
-      }
-      for (vtkIdType n = 0; n < count; ++n)
-      {
-        const float value = this->Turbulence ? std::abs(noise[n]) : noise[n];
-        sum[n] += static_cast<float>(amplitude) * value;
-      }
-    }
-    std::copy_n(sum.begin(), count, this->Noise + first);
-  }
-};
-
 /// The tiles that an image of bands holds, made by SubbandDecomposition or SubbandNoiseTiles.
 steerable::SubbandTiles ReadTiles(vtkImageData* image)
 {
@@ -763,6 +401,586 @@ steerable::SubbandTiles ReadTiles(vtkImageData* image)
   }
   return tiles;
 }
+
+/// The points of a chunk that one set of tiles contributes to, and with what weights.
+struct PlanePoints
+{
+  /// What weights are found from.
+  struct Shape
+  {
+    /// XX, XY and YY, in squared repeats of the tile.
+    Eigen::Array3d Metric;
+    Eigen::Array3d Footprint;
+    double Blend; ///< Of the tiles of several planes.
+  };
+  std::vector<unsigned char> Points; // within the chunk
+  std::vector<Eigen::Vector2d> Texture;
+  std::vector<Shape> Shapes;
+  /// Of each octave, of each point, of each band.
+  std::vector<std::vector<float>> Weights;
+};
+
+struct Chunk
+{
+  std::vector<PlanePoints> Planes;
+  std::vector<float> Distortion; // where it is asked for
+};
+
+/// What the shapes and weights of points depend on besides their surface.
+struct PointsKey
+{
+  /// Only compared: they may be gone.
+  std::array<const vtkDataArray*, 6> Arrays = {};
+  std::vector<double> Values;
+  std::vector<Eigen::Vector3d> Seams;
+
+  bool operator==(const PointsKey& other) const
+  {
+    return this->Arrays == other.Arrays && this->Values == other.Values && this->Seams == other.Seams;
+  }
+};
+
+/// What was found out about a surface of the input, good as long as what it depends on is the same.
+struct KeptSurface
+{
+  vtkMTimeType Time = 0;
+  const vtkDataArray* Texture = nullptr; // only compared
+  bool WrapSeams = false;
+
+  std::optional<noise::CommonBounds> Bounds;
+  double Diagonal = 0.0;
+  std::optional<SurfaceSums> Sums; // with this diagonal
+  double ChartSide = 0.0;
+  std::optional<SubbandSurface::Charts> Charts; // with this side
+  std::optional<noise::SubbandSeams> Seams;
+
+  PointsKey Key;
+  bool ArePointsKnown = false;
+  std::vector<Chunk> Chunks;
+  PointCounts Counts;
+
+  void ForgetPoints()
+  {
+    this->ArePointsKnown = false;
+    this->Chunks = {};
+    this->Counts = PointCounts();
+  }
+};
+
+/// By datasets of the input, which are only compared: they may be gone.
+class KeptSurfaces
+{
+public:
+  /// Gives each block what is known of it, and drops what nobody asks for.
+  void Assign(std::vector<Block>& blocks, bool wrapSeams)
+  {
+    std::map<const vtkDataObject*, KeptSurface> before;
+    before.swap(this->Entries);
+    for (Block& block : blocks)
+    {
+      const auto known = before.find(block.Source);
+      KeptSurface& now = this->Entries[block.Source];
+      if (known != before.end())
+      {
+        now = std::move(known->second);
+        before.erase(known);
+      }
+      const vtkMTimeType time = block.Source->GetMTime();
+      if (now.Time != time || now.Texture != block.Texture || now.WrapSeams != wrapSeams)
+      {
+        now = KeptSurface();
+        now.Time = time;
+        now.Texture = block.Texture;
+        now.WrapSeams = wrapSeams;
+      }
+      block.Known = &now;
+    }
+  }
+
+  void Clear() { this->Entries.clear(); }
+
+private:
+  std::map<const vtkDataObject*, KeptSurface> Entries;
+};
+} // namespace
+
+struct vtkPolyDataSubbandNoise::Internals
+{
+  KeptSurfaces Kept;
+  TileCache TextureTiles;
+  TileCache PlaneTiles;
+  TileCache SeamTiles; // of planes that take over from a texture
+
+  /// The tiles that an image of bands holds, read anew only for another image or a changed one.
+  const steerable::SubbandTiles& GetImageTiles(vtkImageData* image)
+  {
+    const vtkMTimeType time = image ? image->GetMTime() : 0;
+    if (image != this->Image || time != this->ImageTime || !image)
+    {
+      this->Image = nullptr;
+      this->ImageTiles = ReadTiles(image);
+      this->Image = image;
+      this->ImageTime = time;
+    }
+    return this->ImageTiles;
+  }
+
+  /// What comes from inputs.
+  void Forget()
+  {
+    this->Kept.Clear();
+    this->Image = nullptr;
+    this->ImageTiles = steerable::SubbandTiles();
+  }
+
+  /// How long features become, tabulated anew only for other parameters: that takes some 20 ms.
+  const steerable::SubbandAnisotropy* GetAnisotropy(int orientations, steerable::WeightMethod method)
+  {
+    if (!this->Anisotropy || orientations != this->AnisotropyOrientations ||
+      method != this->AnisotropyMethod)
+    {
+      this->Anisotropy = std::make_unique<steerable::SubbandAnisotropy>(orientations, method);
+      this->AnisotropyOrientations = orientations;
+      this->AnisotropyMethod = method;
+    }
+    return this->Anisotropy.get();
+  }
+
+private:
+  const vtkImageData* Image = nullptr; // only compared
+  vtkMTimeType ImageTime = 0;
+  steerable::SubbandTiles ImageTiles;
+  std::unique_ptr<steerable::SubbandAnisotropy> Anisotropy;
+  int AnisotropyOrientations = 0;
+  steerable::WeightMethod AnisotropyMethod = steerable::WeightMethod::None;
+};
+
+namespace
+{
+/// What points are looked up in and weighted with on the texture or in a planar projection.
+struct Lookup
+{
+  const Layout* Lay;
+  const steerable::SubbandWeights* Weights;
+  const steerable::SubbandTiles* Tiles;
+};
+
+/// What the points of all blocks with one kind of lookups are evaluated with.
+struct Evaluator
+{
+  /// The texture's, or those of three planes, or all four where planes take over at seams.
+  std::vector<Lookup> Lookups;
+  double Wavelength;
+  double Anisotropy;
+  int Octaves;
+  double Persistence;
+  bool Turbulence;
+  bool AntiAlias;
+  std::uint32_t Seed;
+
+  /// Output arrays; all but the first may be null.
+  float* Noise = nullptr;
+  float* WeightArray = nullptr;
+  float* Distortion = nullptr;
+  bool NeedsDistortion = false;
+  /// Weights of the user's own, one tuple a point of all planes' bands; null: those of the metric.
+  vtkDataArray* OwnWeights = nullptr;
+  /// Of each octave and orientation, orientation fastest; null: all 1.
+  vtkDataArray* Factors = nullptr;
+  /// Wavelength and Anisotropy of each point; null: those of all, the latter what SteeredFeature takes.
+  vtkDataArray* WavelengthArray = nullptr;
+  vtkDataArray* AnisotropyArray = nullptr;
+  const steerable::SubbandAnisotropy* Scale = nullptr; // null: Method None
+  /// The property, where the array of anisotropies has no value.
+  double Wanted = 1.0;
+  /// Where planes take over from the texture; null: nowhere.
+  const noise::SubbandSeams* Seams = nullptr;
+  /// All of an image counts, with its residuals, whatever the metric.
+  bool WholeImage = false;
+  /// Antialiased weights are held at the variance of noise: not those that are no noise's.
+  bool Limited = true;
+
+  double GetWavelength(vtkIdType point) const
+  {
+    return WavelengthAt(this->WavelengthArray, point, this->Wavelength);
+  }
+  double GetSteering(vtkIdType point) const
+  {
+    if (!this->AnisotropyArray)
+    {
+      return this->Anisotropy;
+    }
+    const double wanted = AnisotropyAt(this->AnisotropyArray, point, this->Wanted);
+    return this->Scale ? this->Scale->GetSteering(wanted) : wanted;
+  }
+
+  /// Where the weights of a lookup begin in a tuple of all; of one after the last: their number.
+  int GetFirstComponent(std::size_t lookup) const
+  {
+    int first = 0;
+    for (std::size_t l = 0; l < lookup; ++l)
+    {
+      first += this->Lookups[l].Tiles->Components();
+    }
+    return first;
+  }
+
+  static Eigen::Matrix2d Symmetric(const Eigen::Array3d& entries)
+  {
+    return (Eigen::Matrix2d() << entries[0], entries[1], entries[1], entries[2]).finished();
+  }
+
+  /// Adds a point with this metric, in squared repeats of the tile; tells whether it was clamped.
+  bool AddPoint(PlanePoints& plane, std::size_t which, vtkIdType point, const Eigen::Vector2d& texture,
+    const Eigen::Matrix2d& metric, const Eigen::Matrix2d& footprint, double blend, PointCounts& counts) const
+  {
+    if (!texture.allFinite() || !metric.allFinite())
+    {
+      return false;
+    }
+    plane.Points.push_back(static_cast<unsigned char>(point));
+    plane.Texture.push_back(texture);
+    plane.Shapes.push_back({ { metric(0, 0), metric(0, 1), metric(1, 1) },
+      { footprint(0, 0), footprint(0, 1), footprint(1, 1) }, blend });
+    const Lookup& lookup = this->Lookups[which];
+    Eigen::Matrix2d clamped = metric;
+    if (lookup.Weights->GetParameters().Method == steerable::WeightMethod::None ||
+      this->WholeImage || blend * blend < VisibleBlend || !lookup.Weights->ClampMetric(clamped))
+    {
+      return false;
+    }
+    // The range of the factors, from the range of eigenvalues.
+    const steerable::SubbandParameters& pyramid = lookup.Lay->Pyramid;
+    const double smallest = std::pow(pyramid.CenterFrequency(), -2.0);
+    const double largest = std::ldexp(smallest, 2 * (pyramid.Scales - 1));
+    const double mean = 0.5 * metric.trace();
+    const double radius = std::hypot(0.5 * (metric(0, 0) - metric(1, 1)), metric(0, 1));
+    const double low = std::max(mean - radius, 1e-12 * mean);
+    const double coarser = std::sqrt(smallest / low);
+    const double finer = std::sqrt((mean + radius) / largest);
+    counts.Coarser = std::max(counts.Coarser, coarser);
+    counts.Finer = std::max(counts.Finer, finer);
+    return std::max(coarser, finer) > std::exp2(ClampedOctaves);
+  }
+
+  /// What weights and shapes depend on besides the surface.
+  PointsKey GetKey(const Block& block, const noise::Plane& plane, int avoided) const
+  {
+    PointsKey key;
+    key.Arrays = { block.Texture, block.Vectors, block.Wavelengths, block.Anisotropies, this->OwnWeights,
+      this->Factors };
+    key.Values = { double(block.CellVectors), double(plane[0]), double(plane[1]), double(avoided),
+      this->Wavelength, this->Anisotropy, this->Wanted, double(this->AntiAlias), double(this->WholeImage),
+      double(this->Limited), double(this->NeedsDistortion), double(this->Seams != nullptr) };
+    for (const Lookup& lookup : this->Lookups)
+    {
+      const steerable::SubbandWeightParameters& weights = lookup.Weights->GetParameters();
+      const steerable::SubbandParameters& pyramid = weights.Pyramid;
+      key.Values.insert(key.Values.end(),
+        { double(pyramid.Orientations), double(pyramid.Scales), double(pyramid.TileSize), pyramid.BandCenter,
+          double(weights.Method), double(weights.RadialTriple), weights.FixedScale, lookup.Lay->Repeats,
+          double(lookup.Tiles->Residuals) });
+    }
+    if (this->Factors)
+    {
+      key.Values.push_back(this->Octaves); // of the array's components
+    }
+    if (this->Seams)
+    {
+      key.Seams = this->Seams->GetPlaces();
+    }
+    return key;
+  }
+
+  /// Noise of the chunks [begin, end); `known` ones need no surface. Adds to what is known in `kept` if it is there.
+  PointCounts Evaluate(const Block& block, const noise::SteeringVectors& vectors,
+    vtkUnsignedCharArray* ghosts, bool known, std::vector<Chunk>* kept, std::size_t begin, std::size_t end) const
+  {
+    PointCounts counts;
+    Chunk own;
+    for (std::size_t c = begin; c < end; ++c)
+    {
+      Chunk& chunk = kept ? (*kept)[c] : own;
+      const vtkIdType first = static_cast<vtkIdType>(c) * ChunkSize;
+      const vtkIdType last = std::min(first + ChunkSize, block.Mesh->GetNumberOfPoints());
+      if (!known)
+      {
+        counts += this->FindPoints(block, vectors, ghosts, first, last, chunk);
+      }
+      for (std::size_t which = 0; which < chunk.Planes.size(); ++which)
+      {
+        this->Weigh(chunk.Planes[which], which, first);
+      }
+      this->SumOctaves(chunk.Planes, first, last - first);
+      if (this->NeedsDistortion)
+      {
+        std::copy(chunk.Distortion.begin(), chunk.Distortion.end(), this->Distortion + first);
+      }
+      for (PlanePoints& plane : chunk.Planes)
+      {
+        plane.Weights.resize(std::min(plane.Weights.size(), MostKeptOctaves));
+      }
+    }
+    return counts;
+  }
+
+  PointCounts FindPoints(const Block& block, const noise::SteeringVectors& vectors, vtkUnsignedCharArray* ghosts,
+    vtkIdType first, vtkIdType last, Chunk& chunk) const
+  {
+    PointCounts counts;
+    chunk.Planes.assign(this->Lookups.size(), PlanePoints());
+    chunk.Distortion.assign(this->NeedsDistortion ? last - first : 0, 0.0f);
+    for (vtkIdType point = first; point < last; ++point)
+    {
+      PointCounts here;
+      here.Points = 1;
+      if (block.Texture)
+      {
+        this->AddTextured(*block.Surface, vectors, point, first, chunk, here);
+      }
+      else
+      {
+        this->AddProjected(*block.Surface, vectors, point, first, chunk, 1.0, here);
+      }
+      if (!ghosts || !ghosts->GetValue(point))
+      {
+        counts += here;
+      }
+    }
+    for (PlanePoints& plane : chunk.Planes)
+    {
+      plane.Points.shrink_to_fit();
+      plane.Texture.shrink_to_fit();
+      plane.Shapes.shrink_to_fit();
+    }
+    return counts;
+  }
+
+  void AddTextured(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
+    vtkIdType point, vtkIdType first, Chunk& chunk, PointCounts& counts) const
+  {
+    SubbandSurface::PointMetrics metrics;
+    const bool mapped = surface.ComputeTextured(point, vectors, this->GetSteering(point), metrics);
+    if (this->NeedsDistortion)
+    {
+      const double ratio = mapped ? steerable::DistortionRatio(metrics.Isotropic) : 0.0;
+      chunk.Distortion[point - first] = static_cast<float>(ratio);
+    }
+    double share = mapped ? 1.0 : 0.0;
+    if (this->Seams)
+    {
+      if (mapped)
+      {
+        const int orientations = this->Lookups[0].Lay->Pyramid.Orientations;
+        const double wavelength = this->GetWavelength(point);
+        share = steerable::TextureBlend(steerable::DistortionRatio(metrics.Isotropic),
+          steerable::FollowedStretch(orientations),
+          this->Seams->GetDistance(surface.GetPoint(point), wavelength) / wavelength);
+      }
+      if (share < 1.0)
+      {
+        this->AddProjected(
+          surface, vectors, point, first, chunk, std::sqrt(1.0 - share * share), counts);
+      }
+    }
+    else if (!mapped)
+    {
+      counts.Unmapped = 1;
+    }
+    if (!(share > 0.0))
+    {
+      return;
+    }
+    counts.Undirected = vectors.Values && !metrics.Directed;
+    const double repeats = this->Lookups[0].Lay->Repeats;
+    const double scale = repeats * this->GetWavelength(point);
+    const bool clamped = this->AddPoint(chunk.Planes[0], 0, point - first,
+      repeats * surface.GetTexture(point), metrics.Metric * (scale * scale),
+      metrics.Footprint * (repeats * repeats), share, counts);
+    counts.Clamped = counts.Clamped || clamped;
+  }
+
+  /// `share`: of the projections beside the texture, squares summing to one.
+  void AddProjected(const SubbandSurface& surface, const noise::SteeringVectors& vectors,
+    vtkIdType point, vtkIdType first, Chunk& chunk, double share, PointCounts& counts) const
+  {
+    SubbandSurface::PointFeatures features;
+    const bool mapped = surface.ComputeProjected(point, vectors, this->GetSteering(point), features);
+    if (this->NeedsDistortion && !surface.IsTextured())
+    {
+      chunk.Distortion[point - first] =
+        mapped ? static_cast<float>(1.0 / features.Normal.cwiseAbs().maxCoeff()) : 0.0f;
+    }
+    if (!mapped)
+    {
+      counts.Unmapped = 1;
+      return;
+    }
+    counts.Undirected = vectors.Values && !features.Directed;
+    const Eigen::Vector3d blend = share * steerable::TriplanarBlend(features.Normal);
+    const std::size_t firstPlane = surface.IsTextured() ? 1 : 0;
+    const double repeats = this->Lookups[firstPlane].Lay->Repeats;
+    const Eigen::Vector3d place = surface.GetPoint(point) * repeats;
+    const double wavelength = this->GetWavelength(point);
+    const Eigen::Matrix3d feature = features.Feature * (wavelength * wavelength);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      if (blend[axis] > 0.0)
+      {
+        const steerable::TextureGradients gradients =
+          steerable::PlanarGradients(features.Normal, axis, 1.0 / repeats);
+        const Eigen::Vector2d texture(place[axis == 0 ? 1 : 0], place[axis == 2 ? 1 : 2]);
+        const std::size_t which = firstPlane + axis;
+        const bool clamped = this->AddPoint(chunk.Planes[which], which, point - first, texture,
+          steerable::SurfaceMetric(gradients, feature),
+          gradients.transpose() * features.Spacing * gradients, blend[axis], counts);
+        counts.Clamped = counts.Clamped || clamped;
+      }
+    }
+  }
+
+  /// Octaves with weights of their own; without a filter and factors all have the first one's.
+  std::size_t GetWeightedOctaves() const
+  {
+    return this->AntiAlias || this->Factors ? static_cast<std::size_t>(this->Octaves) : 1;
+  }
+
+  /// The weights that a plane still lacks; the chunk begins at the point `first`.
+  void Weigh(PlanePoints& plane, std::size_t which, vtkIdType first) const
+  {
+    const Lookup& lookup = this->Lookups[which];
+    const int bands = lookup.Lay->Pyramid.Components();
+    const int components = lookup.Tiles->Components();
+    const std::size_t points = plane.Points.size();
+    const std::size_t known = plane.Weights.size();
+    const std::size_t octaves = this->GetWeightedOctaves();
+    if (octaves <= known)
+    {
+      return;
+    }
+    plane.Weights.resize(octaves);
+    for (std::size_t octave = known; octave < octaves; ++octave)
+    {
+      plane.Weights[octave].resize(components * points);
+    }
+    double gamma[MostSubbandComponents];
+    double beta[MostSubbandComponents];
+    for (std::size_t n = 0; n < points; ++n)
+    {
+      const vtkIdType point = first + plane.Points[n];
+      this->ComputeGamma(plane.Shapes[n], which, point, gamma);
+      for (std::size_t octave = known; octave < octaves; ++octave)
+      {
+        std::fill_n(beta, components, 1.0);
+        if (this->AntiAlias)
+        {
+          const Eigen::Matrix2d footprint =
+            Symmetric(plane.Shapes[n].Footprint) * std::ldexp(1.0, 2 * static_cast<int>(octave));
+          lookup.Weights->Antialias(footprint, beta);
+          if (components > bands)
+          {
+            lookup.Weights->AntialiasHigh(footprint, beta + bands);
+          }
+        }
+        for (int c = 0; c < components; ++c)
+        {
+          beta[c] *= gamma[c];
+        }
+        if (this->AntiAlias && this->Limited)
+        {
+          lookup.Weights->LimitVariance(plane.Shapes[n].Blend * plane.Shapes[n].Blend, beta);
+        }
+        if (this->Factors)
+        {
+          const int orientations = lookup.Lay->Pyramid.Orientations;
+          // The low residual of an image has no orientation.
+          for (int c = 0; c < (components > bands ? components - 1 : components); ++c)
+          {
+            beta[c] *= this->Factors->GetComponent(
+              point, static_cast<int>(octave) * orientations + c % orientations);
+          }
+        }
+        std::copy(beta, beta + components, plane.Weights[octave].begin() + n * components);
+      }
+    }
+  }
+
+  /// Weights before what each octave adds.
+  void ComputeGamma(const PlanePoints::Shape& shape, std::size_t which, vtkIdType point, double* gamma) const
+  {
+    const Lookup& lookup = this->Lookups[which];
+    const int components = lookup.Tiles->Components();
+    std::fill(gamma + lookup.Lay->Pyramid.Components(), gamma + components, 0.0);
+    lookup.Weights->Compute(Symmetric(shape.Metric), gamma);
+    if (this->WholeImage)
+    {
+      std::fill_n(gamma, components, 1.0);
+    }
+    if (this->OwnWeights)
+    {
+      const int offset = this->GetFirstComponent(which);
+      for (int c = 0; c < components; ++c)
+      {
+        const double own = this->OwnWeights->GetComponent(point, offset + c);
+        gamma[c] = std::isfinite(own) ? own / shape.Blend : 0.0;
+      }
+    }
+    for (int c = 0; c < components; ++c)
+    {
+      gamma[c] *= shape.Blend;
+    }
+  }
+
+  void SumOctaves(const std::vector<PlanePoints>& planes, vtkIdType first, vtkIdType count) const
+  {
+    const vtkIdType tuple = this->GetFirstComponent(planes.size());
+    std::vector<double> uv;
+    std::vector<float> values;
+    std::array<float, ChunkSize> sum{};
+    double amplitude = 1.0;
+    for (int octave = 0; octave < this->Octaves; ++octave, amplitude *= this->Persistence)
+    {
+      const double scale = std::ldexp(1.0, octave);
+      // Without a shift octaves would be copies of each other.
+      const std::array<double, 2> shift =
+        octave == 0 ? std::array<double, 2>{} : steerable::TileOffset(octave, this->Seed);
+      std::array<float, ChunkSize> noise{};
+      for (std::size_t which = 0; which < planes.size(); ++which)
+      {
+        const PlanePoints& plane = planes[which];
+        const steerable::SubbandTiles& tiles = *this->Lookups[which].Tiles;
+        const int components = tiles.Components();
+        const std::vector<float>& weights =
+          plane.Weights[std::min<std::size_t>(octave, this->GetWeightedOctaves() - 1)];
+        const std::size_t points = plane.Points.size();
+        uv.resize(2 * points);
+        values.resize(points);
+        for (std::size_t n = 0; n < points; ++n)
+        {
+          uv[2 * n] = scale * plane.Texture[n][0] + shift[0];
+          uv[2 * n + 1] = scale * plane.Texture[n][1] + shift[1];
+        }
+        steerable::SumSubbands(
+          tiles, steerable::TileLookup::CatmullRom, points, uv.data(), weights.data(), values.data());
+        for (std::size_t n = 0; n < points; ++n)
+        {
+          noise[plane.Points[n]] += values[n];
+          if (this->WeightArray && octave == 0)
+          {
+            std::copy_n(weights.data() + n * components, components,
+              this->WeightArray + (first + plane.Points[n]) * tuple + this->GetFirstComponent(which));
+          }
+        }
+      }
+      for (vtkIdType n = 0; n < count; ++n)
+      {
+        const float value = this->Turbulence ? std::abs(noise[n]) : noise[n];
+        sum[n] += static_cast<float>(amplitude) * value;
+      }
+    }
+    std::copy_n(sum.begin(), count, this->Noise + first);
+  }
+};
 
 /// Collects the surfaces of the input, and what to say about the rest.
 class BlockFinder
@@ -887,6 +1105,17 @@ vtkPolyDataSubbandNoise::~vtkPolyDataSubbandNoise()
 }
 
 //------------------------------------------------------------------------------
+void vtkPolyDataSubbandNoise::SetKeepFields(bool keepFields)
+{
+  // No reason to execute again.
+  this->KeepFields = keepFields;
+  if (!keepFields)
+  {
+    this->Cache->Forget();
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkPolyDataSubbandNoise::SetOrientations(int orientations)
 {
   const int allowed = noise::TakeOrientations(this, orientations);
@@ -975,6 +1204,16 @@ int vtkPolyDataSubbandNoise::RequestData(
     return refuse(why.str());
   }
 
+  // On every way out.
+  const auto drop = [this](Internals* cache)
+  {
+    if (!this->KeepFields)
+    {
+      cache->Forget();
+    }
+  };
+  const std::unique_ptr<Internals, decltype(drop)> dropUnlessKept(this->Cache, drop);
+
   // The output: shallow copies of the input's datasets, so that arrays can be added.
   BlockFinder finder(this, this->GetInputArrayInformation(0));
   std::vector<Block> blocks;
@@ -982,17 +1221,17 @@ int vtkPolyDataSubbandNoise::RequestData(
   noise::CommonBounds bounds;
   vtkIdType blocksWithout = 0;
   std::string otherType;
-  const auto addMesh = [&](vtkPolyData* mesh)
+  const auto addMesh = [&](vtkPolyData* mesh, vtkDataObject* source)
   {
     Block block;
     block.Mesh = mesh;
+    block.Source = source;
     if (mesh->GetNumberOfPoints() == 0)
     {
       return;
     }
     if (finder.Find(block))
     {
-      bounds.Add(mesh, noise::HiddenSamples(mesh));
       blocks.push_back(std::move(block));
     }
     else
@@ -1015,7 +1254,7 @@ int vtkPolyDataSubbandNoise::RequestData(
       composite->SetDataSet(iterator, copy);
       if (auto* mesh = vtkPolyData::SafeDownCast(copy))
       {
-        addMesh(mesh);
+        addMesh(mesh, leaf);
       }
       else
       {
@@ -1027,7 +1266,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   else
   {
     output->ShallowCopy(input);
-    addMesh(vtkPolyData::SafeDownCast(output));
+    addMesh(vtkPolyData::SafeDownCast(output), input);
   }
 
   // What fails on this rank is told of after everything that ranks do together: the others wait for it.
@@ -1047,23 +1286,47 @@ int vtkPolyDataSubbandNoise::RequestData(
     }
   };
   const bool ofImage = this->GetNumberOfInputConnections(1) > 0;
-  steerable::SubbandTiles imageTiles;
+  const steerable::SubbandTiles* imageTiles = nullptr;
   if (ofImage && !blocks.empty())
   {
-    attempt([&] { imageTiles = ReadTiles(vtkImageData::GetData(inputVector[1])); });
+    attempt([&] { imageTiles = &this->Cache->GetImageTiles(vtkImageData::GetData(inputVector[1])); });
   }
   const bool blendSeams = this->BlendSeams && !ofImage;
+  this->Cache->Kept.Assign(blocks, this->WrapSeams);
+  for (const Block& block : blocks)
+  {
+    std::optional<noise::CommonBounds>& known = block.Known->Bounds;
+    if (!known)
+    {
+      known.emplace();
+      known->Add(block.Mesh, noise::HiddenSamples(block.Mesh));
+    }
+    bounds.Add(*known);
+  }
   bounds.Reduce(this->Controller);
   const double diagonal = bounds.GetDiagonal();
+  const auto getSurface = [&](Block& block) -> SubbandSurface&
+  {
+    if (!block.Surface)
+    {
+      block.Surface =
+        std::make_unique<SubbandSurface>(block.Mesh, block.Texture, this->WrapSeams, blendSeams);
+    }
+    return *block.Surface;
+  };
   attempt(
     [&]
     {
       for (Block& block : blocks)
       {
-        block.Surface =
-          std::make_unique<SubbandSurface>(
-            block.Mesh, block.Texture, this->WrapSeams, blendSeams);
-        block.Surface->AddTo(sums, diagonal);
+        KeptSurface& known = *block.Known;
+        if (!known.Sums || known.Diagonal != diagonal)
+        {
+          known.Diagonal = diagonal;
+          known.Sums.emplace();
+          getSurface(block).AddTo(*known.Sums, diagonal);
+        }
+        sums += *known.Sums;
         ++sums[block.Texture ? SurfaceSums::TexturedBlocks : SurfaceSums::ProjectedBlocks];
       }
     });
@@ -1172,11 +1435,17 @@ int vtkPolyDataSubbandNoise::RequestData(
   attempt(
     [&]
     {
-      for (const Block& block : blocks)
+      for (Block& block : blocks)
       {
         if (this->Parameterization == AUTOMATIC && block.Texture && !ofImage)
         {
-          const SubbandSurface::Charts small = block.Surface->FindChartsBelow(wavelength);
+          KeptSurface& known = *block.Known;
+          if (!known.Charts || known.ChartSide != wavelength)
+          {
+            known.Charts = getSurface(block).FindChartsBelow(wavelength);
+            known.ChartSide = wavelength;
+          }
+          const SubbandSurface::Charts& small = *known.Charts;
           charts[0] += SurfaceSums::RoundArea(small.Area, diagonal);
           charts[1] += SurfaceSums::RoundArea(small.WholeArea, diagonal);
           charts[2] += small.Count;
@@ -1191,11 +1460,17 @@ int vtkPolyDataSubbandNoise::RequestData(
     attempt(
       [&]
       {
-        for (const Block& block : blocks)
+        for (Block& block : blocks)
         {
           if (block.Texture && !shattered)
           {
-            seams.Add(*block.Surface);
+            std::optional<noise::SubbandSeams>& known = block.Known->Seams;
+            if (!known)
+            {
+              known.emplace();
+              known->Add(getSurface(block));
+            }
+            seams.Add(*known);
           }
         }
       });
@@ -1224,11 +1499,11 @@ int vtkPolyDataSubbandNoise::RequestData(
     pyramid.Seed = static_cast<std::uint32_t>(this->Seed);
     Layout layouts[2] = { LayOnPlanes(pyramid, wavelengths, mostSteering),
       LayOnTexture(pyramid, sums, diagonal > 0.0 ? diagonal : 1.0, wavelengths, mostSteering) };
-    if (ofImage)
+    if (imageTiles)
     {
       // It lies where texture coordinates say.
       layouts[1] = Layout();
-      layouts[1].Pyramid = imageTiles.Parameters;
+      layouts[1].Pyramid = imageTiles->Parameters;
     }
     textureRepeats = layouts[1].Repeats;
     std::unique_ptr<steerable::SubbandWeights> solvers[2];
@@ -1240,14 +1515,12 @@ int vtkPolyDataSubbandNoise::RequestData(
       if (shattered && block.Texture)
       {
         block.Texture = nullptr;
-        block.Surface = std::make_unique<SubbandSurface>(block.Mesh, nullptr, this->WrapSeams);
+        block.Surface.reset();
       }
       const bool textured = block.Texture != nullptr;
-      if (textured && folds)
-      {
-        block.Surface->Avoid(
-          mirrored ? steerable::TriangleMapping::Regular : steerable::TriangleMapping::Flipped);
-      }
+      const steerable::TriangleMapping avoided = !folds ? steerable::TriangleMapping::Singular
+        : mirrored                                      ? steerable::TriangleMapping::Regular
+                                                        : steerable::TriangleMapping::Flipped;
       std::vector<Lookup> lookups;
       const auto addLookups = [&](bool ofTexture, int firstPlane)
       {
@@ -1264,7 +1537,7 @@ int vtkPolyDataSubbandNoise::RequestData(
         }
         if (ofImage)
         {
-          lookups.push_back({ &layout, solvers[ofTexture].get(), &imageTiles });
+          lookups.push_back({ &layout, solvers[ofTexture].get(), imageTiles });
           return;
         }
         TileCache& cache = ofTexture ? this->Cache->TextureTiles
@@ -1283,19 +1556,6 @@ int vtkPolyDataSubbandNoise::RequestData(
       }
 
       const vtkIdType points = block.Mesh->GetNumberOfPoints();
-      noise::SteeringVectors vectors;
-      std::vector<float> scratch;
-      std::unique_ptr<steerable::TupleReader<float>> reader;
-      if (block.Vectors)
-      {
-        const auto tuples = static_cast<std::size_t>(block.Vectors->GetNumberOfTuples());
-        reader =
-          noise::MakeVectorReader(block.Vectors, noise::WorldAxes, false, bounds.GetPlane());
-        scratch.resize(3 * tuples);
-        vectors.Values = reader->Read(0, tuples, scratch.data());
-        vectors.Cells = block.CellVectors;
-      }
-
       Evaluator evaluator{ lookups, wavelength, anisotropy, this->Octaves, this->Persistence,
         this->Function == TURBULENCE, this->AntiAlias, pyramid.Seed };
       evaluator.Seams = textured && blendSeams ? &seams : nullptr;
@@ -1329,7 +1589,7 @@ int vtkPolyDataSubbandNoise::RequestData(
             (lookups.size() > 3 ? ", and 3 planes with " +
                   std::to_string(lookups[1].Lay->Pyramid.Scales)
                 : lookups.size() > 1 ? ", 3 planes"
-                : imageTiles.Residuals > 0 ? ", residuals" : "") +
+                : imageTiles && imageTiles->Residuals > 0 ? ", residuals" : "") +
             "). OutputWeights adds such an array to begin with.");
         }
       }
@@ -1367,17 +1627,49 @@ int vtkPolyDataSubbandNoise::RequestData(
       {
         auto array = noise::NewOutputArray("Distortion", 1, points);
         evaluator.Distortion = array->GetPointer(0);
+        evaluator.NeedsDistortion = true;
         pointData->AddArray(array);
+      }
+      KeptSurface& known = *block.Known;
+      PointsKey key = evaluator.GetKey(block, bounds.GetPlane(), static_cast<int>(avoided));
+      const bool arePointsKnown = known.ArePointsKnown && known.Key == key;
+      noise::SteeringVectors vectors;
+      std::vector<float> scratch;
+      std::unique_ptr<steerable::TupleReader<float>> reader;
+      if (!arePointsKnown && block.Vectors)
+      {
+        const auto tuples = static_cast<std::size_t>(block.Vectors->GetNumberOfTuples());
+        reader =
+          noise::MakeVectorReader(block.Vectors, noise::WorldAxes, false, bounds.GetPlane());
+        scratch.resize(3 * tuples);
+        vectors.Values = reader->Read(0, tuples, scratch.data());
+        vectors.Cells = block.CellVectors;
+      }
+
+      const auto chunks = static_cast<std::size_t>((points + ChunkSize - 1) / ChunkSize);
+      known.ArePointsKnown = false; // until all of it is done
+      if (!arePointsKnown)
+      {
+        known.ForgetPoints();
+        known.Key = std::move(key);
+        known.Chunks.resize(this->KeepFields ? chunks : 0);
+        getSurface(block).Avoid(avoided);
       }
       vtkUnsignedCharArray* ghosts = block.Mesh->GetPointGhostArray();
       ghosts = ghosts && ghosts->GetNumberOfTuples() >= points ? ghosts : nullptr;
-      counts += noise::ForEachPart(this, static_cast<std::size_t>(points), points,
+      const PointCounts found = noise::ForEachPart(this, chunks, points,
         static_cast<double>(b) / blocks.size(), 1.0 / blocks.size(),
         [&](std::size_t begin, std::size_t end)
         {
           return evaluator.Evaluate(
-            block, vectors, ghosts, static_cast<vtkIdType>(begin), static_cast<vtkIdType>(end));
+            block, vectors, ghosts, arePointsKnown, this->KeepFields ? &known.Chunks : nullptr, begin, end);
         });
+      if (!arePointsKnown)
+      {
+        known.Counts = found;
+      }
+      known.ArePointsKnown = this->KeepFields && !this->GetAbortOutput();
+      counts += known.Counts;
       pointData->AddArray(result);
       pointData->SetActiveScalars(this->ResultArrayName);
       block.Surface.reset();
@@ -1494,6 +1786,7 @@ void vtkPolyDataSubbandNoise::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Phase: " << this->Phase << "\n";
   os << indent << "ResultArrayName: " << (this->ResultArrayName ? this->ResultArrayName : "(none)")
      << "\n";
+  os << indent << "KeepFields: " << this->KeepFields << "\n";
   os << indent << "OutputWeights: " << this->OutputWeights << "\n";
   os << indent << "OutputDistortion: " << this->OutputDistortion << "\n";
   os << indent << "Controller: " << this->Controller << "\n";

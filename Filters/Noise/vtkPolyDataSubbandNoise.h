@@ -263,6 +263,21 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Whether what depends on the input is kept for the next execution while the properties that it
+   * depends on stay the same: of each point metrics of the mapping and weights of the bands. Then
+   * another Phase, Persistence, Function or number of Octaves costs the lookups alone, but for the
+   * weights of octaves that were not there before. It takes 73 bytes for each point, with planar
+   * projections for each one that counts there, and 4 for each band in each of the first four
+   * octaves; it is dropped when the input's modification time changes or this is switched off,
+   * which drops it at once. The input itself is not kept. Default on.
+   */
+  virtual void SetKeepFields(bool keepFields);
+  vtkGetMacro(KeepFields, bool);
+  vtkBooleanMacro(KeepFields, bool);
+  ///@}
+
+  ///@{
   /// Ranks that agree on automatic values; default the global controller, null: this process alone.
   virtual void SetController(vtkMultiProcessController* controller);
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
@@ -297,6 +312,7 @@ protected:
   char* ResultArrayName = nullptr;
   bool OutputWeights = false;
   bool OutputDistortion = false;
+  bool KeepFields = true;
   vtkMultiProcessController* Controller = nullptr;
 
 private:
@@ -304,7 +320,7 @@ private:
   void operator=(const vtkPolyDataSubbandNoise&) = delete;
 
   struct Internals;
-  Internals* Cache; // tiles, kept while their parameters stand
+  Internals* Cache; // tiles and weights, kept while their parameters stand
 };
 
 #endif

@@ -538,6 +538,7 @@ struct vtkSteerableNoiseFilter::Internals
     {
       noise::WithThreads([&] { samples.ComputeCurvature(parameters.FeatureSize); });
     }
+    noise::WithThreads([&] { samples.FindOrder(); });
     auto result =
       noise::NewOutputArray(this->Self->ResultArrayName, 1, samples.GetNumberOfSamples());
     float* values = result->GetPointer(0);

@@ -455,9 +455,10 @@ public:
 
   ///@{
   /**
-   * Whether what depends on the input alone is kept for the next execution: normals, curvature, bounds and
-   * distances of samples. Then a change of any other property costs the noise alone. It takes 24 bytes for
-   * each sample on a surface and 12 in a volume, none on images, and is dropped when the input's modification time
+   * Whether what depends on the input alone is kept for the next execution: normals, curvature,
+   * bounds, distances of samples, and the order to take them in. Then a change of any other property
+   * costs the noise alone. It takes 24 bytes for each sample on a surface and 12 in a volume, 4 more
+   * where successive samples are far apart, none on images, and is dropped when the input's modification time
    * changes or this is switched off, which drops it at once. The input itself is not kept. Default on.
    */
   virtual void SetKeepFields(bool keepFields);

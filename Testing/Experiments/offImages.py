@@ -1,13 +1,16 @@
 # SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Updates of vtkSteerableNoiseFilter on surfaces and unstructured grids, of one build or of several in turn; the table in
-Documentation/performance.md.
+"""Updates of vtkSteerableNoiseFilter on surfaces and unstructured grids and of vtkPolyDataSubbandNoise, of one build or
+of several in turn; the tables in Documentation/performance.md.
 
 pvpython offImages.py [BUILD...]
 
-Each BUILD is a build folder; none: the module steerablenoise on PYTHONPATH. For each mesh: the first update, and the
-next ones, which change the Seed alone; Mpoints/s by the clock and of the processor, medians of 9 that take turns.
-Other options are their defaults, the FeatureSize is automatic. VTK's own choice of threads is left as it is.
+Each BUILD is a build folder; none: the module steerablenoise on PYTHONPATH. For each mesh: the first update, and next
+ones, which change one property alone; Mpoints/s by the clock and of the processor, medians of turns.
+Other options are their defaults, sizes are automatic. VTK's own choice of threads is left as it is.
+
+On surfaces with texture coordinates, with and without planar projections in their place, vtkPolyDataSubbandNoise is
+steered by the vectors. "raised": Octaves from 1 to 2 for the first time; "octaves": back and forth.
 """
 import os
 import resource
@@ -17,7 +20,10 @@ import sys
 import time
 
 TURNS = 3
-MESHES = ("triangles", "quads", "hexahedra", "tetrahedra")
+NOISE = ("first", "seed")
+SUBBAND = ("first", "phase", "raised", "octaves")
+MESHES = {"triangles": NOISE, "quads": NOISE, "hexahedra": NOISE, "tetrahedra": NOISE, "texture": SUBBAND,
+          "projections": SUBBAND}
 
 
 def wavy(points):
@@ -49,7 +55,7 @@ def surface(triangles):
     plane.SetResolution(511, 511)
     plane.Update()
     mesh = plane.GetOutput()
-    mesh.GetPointData().Initialize()
+    mesh.GetPointData().SetNormals(None)
     wavy(vtk_to_numpy(mesh.GetPoints().GetData()))
     if triangles:
         cut = vtkTriangleFilter()
@@ -74,12 +80,37 @@ def volume(tetrahedra):
 
 
 def make(name):
-    return surface(name == "triangles") if name in MESHES[:2] else volume(name == "tetrahedra")
+    if name in ("hexahedra", "tetrahedra"):
+        return volume(name == "tetrahedra")
+    mesh = surface(name != "quads")
+    if name != "texture":
+        mesh.GetPointData().SetTCoords(None)
+    return mesh
+
+
+def make_filter(name):
+    """Of subband noise with all tiles that a Phase may need, which are made once."""
+    from steerablenoise import vtkPolyDataSubbandNoise, vtkSteerableNoiseFilter
+
+    if MESHES[name] == NOISE:
+        return vtkSteerableNoiseFilter()
+    noise = vtkPolyDataSubbandNoise()
+    noise.SetInputArrayToProcess(0, 0, 0, 0, "flow")
+    noise.SetPhase(0.1)
+    return noise
+
+
+def change(noise, which):
+    if which == "seed":
+        noise.SetSeed(noise.GetSeed() + 1)
+    elif which == "phase":
+        noise.SetPhase(noise.GetPhase() + 0.01)
+    elif which in ("raised", "octaves"):
+        noise.SetOctaves(3 - noise.GetOctaves())
 
 
 def serve():
-    """A build's own process: for each line "mesh first|next" on stdin, the seconds of an update."""
-    from steerablenoise import vtkSteerableNoiseFilter
+    """A build's own process: for each line "mesh change" on stdin, the seconds of an update."""
 
     usage = lambda: sum(resource.getrusage(resource.RUSAGE_SELF)[:2])
     meshes = {name: make(name) for name in MESHES}
@@ -88,9 +119,9 @@ def serve():
     for line in os.fdopen(0):
         name, which = line.split()
         if which == "first":
-            filters[name] = vtkSteerableNoiseFilter()
+            filters[name] = make_filter(name)
             filters[name].SetInputData(meshes[name])
-        filters[name].SetSeed(filters[name].GetSeed() + 1)
+        change(filters[name], which)
         clock, processor = time.perf_counter(), usage()
         filters[name].Update()
         print(time.perf_counter() - clock, usage() - processor, meshes[name].GetNumberOfPoints(), flush=True)
@@ -115,17 +146,21 @@ def ask(server, name, which):
     return 1e-6 * points / clock, 1e-6 * points / processor
 
 
-if sys.argv[1:] == ["--serve"]:
-    serve()
-else:
+def main():
+    if sys.argv[1:] == ["--serve"]:
+        return serve()
     servers = [start(build) for build in sys.argv[1:] or [None]]
-    for name in MESHES:
-        rates = {(server, which): [] for server in servers for which in ("first", "next")}
+    for name, changes in MESHES.items():
+        rates = {(server, which): [] for server in servers for which in changes}
         for turn in range(TURNS):
             for server in servers:
-                for which in ("first", "next"):
+                for which in changes:
                     rates[server, which].append(ask(server, name, which))
-        for which in ("first", "next"):
+        for which in changes:
             medians = [[statistics.median(column) for column in zip(*rates[server, which])] for server in servers]
-            print("%-10s %-5s" % (name, which), "; ".join("%.2f by the clock, %.2f of the processor" % tuple(m) for m in medians),
+            print("%-11s %-7s" % (name, which), "; ".join("%.2f by the clock, %.2f of the processor" % tuple(m) for m in medians),
                   "" if len(servers) < 2 else "ratio %.1f, %.1f" % tuple(medians[-1][i] / medians[0][i] for i in (0, 1)))
+
+
+if __name__ == "__main__":
+    main()

@@ -25,6 +25,7 @@
 #include "vtkSMPTools.h"
 #include "vtkSphereSource.h"
 #include "vtkUnsignedCharArray.h"
+#include "vtkWeakPointer.h"
 #include "vtkXMLPolyDataReader.h"
 
 #include <gtest/gtest.h>
@@ -253,6 +254,7 @@ TEST(PolyDataSubbandNoise, Defaults)
   EXPECT_STREQ(filter->GetResultArrayName(), "SubbandNoise");
   EXPECT_FALSE(filter->GetOutputWeights());
   EXPECT_FALSE(filter->GetOutputDistortion());
+  EXPECT_TRUE(filter->GetKeepFields());
 }
 
 TEST(PolyDataSubbandNoise, AddsOneActiveFloatArrayAndPassesTheRest)
@@ -1769,6 +1771,200 @@ TEST(PolyDataSubbandNoise, CachedTilesGiveTheSameNoise)
     filter->Update();
   }
   EXPECT_EQ(first, Values(filter->GetOutputDataObject(0), "SubbandNoise"));
+}
+
+/// After every kind of change what is kept gives the bits, and the warnings, of a filter that knows nothing.
+TEST(PolyDataSubbandNoise, WhatIsKeptIsThatOfTheInput)
+{
+  using Filter = vtkPolyDataSubbandNoise;
+  constexpr auto points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  const int n = 33;
+  const Map bump = [](double u, double v) { return LongLat(u, 0.1 + 0.8 * v); };
+  const auto make = [&](int turn)
+  {
+    auto mesh = Sheet(n, bump);
+    AddVectors(mesh, false, 3, [&](vtkIdType i) { return Eigen::Vector3d(std::cos(0.1 * i + turn), 0.3, 0.5); });
+    AddVectors(mesh, true, 3, [](vtkIdType i) { return Eigen::Vector3d(0.2, std::cos(0.1 * i), 0.5); })
+      ->SetName("of cells");
+    AddValues(mesh, "lengths", 1, [](vtkIdType i) { return 0.3 + 0.1 * std::cos(0.1 * i); });
+    AddValues(mesh, "ratios", 1, [](vtkIdType i) { return 3.0 + std::cos(0.2 * i); });
+    AddValues(mesh, "factors", 24, [](vtkIdType i) { return 0.5 + 0.4 * std::cos(0.3 * i); });
+    return mesh;
+  };
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, make(1));
+  blocks->SetBlock(1, make(2));
+  auto filter = vtkSmartPointer<Filter>::New();
+  std::vector<Configure> applied;
+  const auto outputOf = [](Filter* noise)
+  {
+    auto messages = Listen(noise);
+    noise->Update();
+    std::vector<float> values;
+    const auto append = [&](vtkDataObject* mesh)
+    {
+      for (const char* name : { "SubbandNoise", "SubbandWeights", "Distortion" })
+      {
+        auto* data = vtkPolyData::SafeDownCast(mesh)->GetPointData();
+        if (data->GetArray(name))
+        {
+          const auto added = Values(vtkPolyData::SafeDownCast(mesh), name);
+          values.insert(values.end(), added.begin(), added.end());
+        }
+      }
+    };
+    auto* output = noise->GetOutputDataObject(0);
+    if (auto* composite = vtkMultiBlockDataSet::SafeDownCast(output))
+    {
+      append(composite->GetBlock(0));
+      append(composite->GetBlock(1));
+    }
+    else
+    {
+      append(output);
+    }
+    return std::make_pair(values, messages->Text.substr(messages->Text.find(')') + 1));
+  };
+  vtkDataObject* image = nullptr;
+  const auto expectAsFresh = [&](const std::string& what)
+  {
+    vtkNew<vtkPolyDataSubbandNoise> fresh;
+    fresh->KeepFieldsOff();
+    auto* input = filter->GetInputDataObject(0, 0);
+    auto copy = vtkSmartPointer<vtkDataObject>::Take(input->NewInstance());
+    copy->DeepCopy(input);
+    fresh->SetInputDataObject(copy);
+    fresh->SetInputDataObject(1, image);
+    for (const Configure& configure : applied)
+    {
+      configure(fresh);
+    }
+    const auto kept = outputOf(filter);
+    const auto anew = outputOf(fresh);
+    EXPECT_GE(kept.first.size(), std::size_t(n * n)) << what << kept.second;
+    // Bits: NaN is none of them.
+    EXPECT_EQ(kept.first, anew.first) << input->GetClassName() << ": " << what;
+    EXPECT_EQ(kept.second.substr(kept.second.find(':') + 1), anew.second.substr(anew.second.find(':') + 1)) << what;
+    // And nothing is left to find out.
+    filter->Modified();
+    EXPECT_EQ(outputOf(filter).first, kept.first) << what;
+  };
+  const auto change = [&](const std::string& what, const Configure& configure)
+  {
+    applied.push_back(configure);
+    configure(filter);
+    expectAsFresh(what);
+  };
+  const auto choose = [](int which, const char* name) -> Configure
+  { return [=](Filter* f) { f->SetInputArrayToProcess(which, 0, 0, points, name); }; };
+
+  for (const bool composite : { false, true })
+  {
+    auto mesh = make(0);
+    filter->SetInputDataObject(composite ? static_cast<vtkDataObject*>(blocks) : mesh);
+    applied = { [](Filter* f) { f->SetTileSize(64); } }; // soon made
+    applied.back()(filter);
+    expectAsFresh("first");
+    change("wavelength", [](Filter* f) { f->SetWavelength(0.25); });
+    change("steered", choose(Filter::STEERING_ARRAY, "field"));
+    change("phase", [](Filter* f) { f->SetPhase(0.3); });
+    change("octaves", [](Filter* f) { f->SetOctaves(3); });
+    change("fewer octaves", [](Filter* f) { f->SetOctaves(2); });
+    change("more than are kept", [](Filter* f) { f->SetOctaves(6); });
+    change("again", [](Filter* f) { f->SetPhase(0.4); });
+    change("persistence", [](Filter* f) { f->SetPersistence(0.5); });
+    change("function", [](Filter* f) { f->SetFunction(Filter::TURBULENCE); });
+    change("seed", [](Filter* f) { f->SetSeed(5); });
+    change("antialias", [](Filter* f) { f->SetAntiAlias(false); });
+    change("fewer octaves without", [](Filter* f) { f->SetOctaves(3); });
+    change("antialias again", [](Filter* f) { f->SetAntiAlias(true); });
+    change("anisotropy", [](Filter* f) { f->SetAnisotropy(2.5); });
+    change("weights", [](Filter* f) { f->SetOutputWeights(true); });
+    change("distortion", [](Filter* f) { f->SetOutputDistortion(true); });
+    change("factors", choose(Filter::FACTORS_ARRAY, "factors"));
+    change("without factors", choose(Filter::FACTORS_ARRAY, "None"));
+    change("lengths", choose(Filter::WAVELENGTH_ARRAY, "lengths"));
+    change("ratios", choose(Filter::ANISOTROPY_ARRAY, "ratios"));
+    change("method", [](Filter* f) { f->SetMethod(Filter::HEURISTIC); });
+    change("triple", [](Filter* f) { f->SetRadialTriple(true); });
+    change("no method", [](Filter* f) { f->SetMethod(Filter::NONE); });
+    change("power", [](Filter* f) { f->SetMethod(Filter::POWER_MATCHED); });
+    change("orientations", [](Filter* f) { f->SetOrientations(4); });
+    change("tiles", [](Filter* f) { f->SetTileSize(128); });
+    change("of cells", [](Filter* f) { Steer(f, true, "of cells"); });
+    change("wrapped", [](Filter* f) { f->SetWrapSeams(true); });
+    change("blended", [](Filter* f) { f->SetBlendSeams(true); });
+    change("planes", [](Filter* f) { f->SetParameterization(Filter::TRIPLANAR); });
+    change("not blended", [](Filter* f) { f->SetBlendSeams(false); });
+    change("small charts", [](Filter* f) { f->SetParameterization(Filter::AUTOMATIC); f->SetWavelength(50.0); });
+    change("texture", [](Filter* f) { f->SetParameterization(Filter::TEXTURE_COORDINATES); f->SetWavelength(0.0); });
+
+    // In place.
+    auto* leaf = vtkPolyData::SafeDownCast(composite ? blocks->GetBlock(1) : mesh.Get());
+    for (vtkIdType i = 0; i < leaf->GetNumberOfPoints(); ++i)
+    {
+      const double* place = leaf->GetPoint(i);
+      leaf->GetPoints()->SetPoint(i, place[0], place[1], 1.4 * place[2]);
+    }
+    const auto touch = [&](vtkObject* part, const char* what)
+    {
+      part->Modified();
+      filter->Modified(); // composites do not see it
+      expectAsFresh(what);
+    };
+    touch(leaf->GetPoints(), "places");
+    vtkDataArray* vectors = leaf->GetCellData()->GetArray("of cells");
+    vectors->FillComponent(0, 2.0);
+    touch(vectors, "vectors");
+    vtkDataArray* texture = leaf->GetPointData()->GetTCoords();
+    for (vtkIdType i = 0; i < texture->GetNumberOfTuples(); ++i)
+    {
+      texture->SetComponent(i, 0, 1.7 * texture->GetComponent(i, 0));
+    }
+    touch(texture, "texture coordinates");
+
+    // Bands of an image, and another image.
+    for (const double frequency : { 0.3, 0.4 })
+    {
+      const auto bands = BandsOf(64, [&](int x, int y) { return std::cos(frequency * x) + 0.01 * y; }, 4, 2);
+      image = bands;
+      filter->SetInputDataObject(1, bands);
+      expectAsFresh("image");
+      change("octaves of an image", [](Filter* f) { f->SetOctaves(3 - f->GetOctaves() % 2); });
+      image->Modified();
+      expectAsFresh("the same image");
+    }
+    image = nullptr;
+    filter->SetInputDataObject(1, image);
+    expectAsFresh("no image");
+
+    // Without a new modification time nothing tells of a change: so much is kept, and can be dropped.
+    for (vtkIdType i = 0; i < texture->GetNumberOfTuples(); ++i)
+    {
+      texture->SetComponent(i, 1, 1.3 * texture->GetComponent(i, 1));
+    }
+    filter->SetPhase(0.7);
+    filter->Modified();
+    const auto kept = outputOf(filter).first;
+    filter->KeepFieldsOff();
+    filter->Modified();
+    EXPECT_NE(outputOf(filter).first, kept);
+    filter->KeepFieldsOn();
+    filter = vtkSmartPointer<Filter>::New();
+  }
+
+  // The input may go.
+  vtkWeakPointer<vtkDataObject> gone;
+  {
+    auto first = make(0);
+    gone = first;
+    filter->SetInputData(first);
+    filter->SetWavelength(0.25);
+    filter->Update();
+  }
+  filter->SetInputData(make(1));
+  filter->Update();
+  EXPECT_EQ(gone, nullptr);
 }
 
 TEST(PolyDataSubbandNoise, WeightsAndDistortion)

@@ -1130,8 +1130,14 @@ TEST(SteerableNoiseFilter, ItsMetricAsTheUsersOwnGivesTheSameNoise)
         largest = std::max(largest, difference);
         squares += difference * difference / first.size();
       }
-      // Of a deviation of 1; the kernel's floats round on both ways, and curvature is a difference of them.
-      EXPECT_LE(std::sqrt(squares), curved ? 1e-6 : 4e-7) << what << (world ? ", world" : "");
+      // Of a deviation of 1; the kernel's floats round on both ways, and curvature is a difference of them. Under a
+      // sanitizer the only level is one without fused products, which rounds once more: 4.14e-7 in a volume.
+#ifdef STEERABLENOISE_INSTRUMENTED
+      constexpr double straight = 4.5e-7;
+#else
+      constexpr double straight = 4e-7;
+#endif
+      EXPECT_LE(std::sqrt(squares), curved ? 1e-6 : straight) << what << (world ? ", world" : "");
       EXPECT_LE(largest, curved ? 1e-5 : 2e-6) << what << (world ? ", world" : "");
     }
   };

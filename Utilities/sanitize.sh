@@ -49,6 +49,7 @@ for what in "${@:-address thread fuzz}"; do
           "-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined $instrumented"
         export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1
         for fuzzer in "$build"/bin/Fuzz*; do
+          [ -x "$fuzzer" ] || continue # the log of an earlier run
           echo "$(basename "$fuzzer")"
           "$fuzzer" -seed="${FUZZ_SEED:-1}" -max_total_time="${FUZZ_SECONDS:-60}" -timeout=20 -max_len=4096 \
             -artifact_prefix="$build/" >"$fuzzer.log" 2>&1 || { tail -n 60 "$fuzzer.log"; exit 1; }

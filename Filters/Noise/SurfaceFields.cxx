@@ -8,16 +8,17 @@
 #include "NoiseLengths.h"
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
+#include "PointPlaces.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
-#include "vtkInformation.h"
 #include "vtkIdList.h"
+#include "vtkInformation.h"
 #include "vtkMath.h"
-#include "vtkNew.h"
 #include "vtkMultiProcessController.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 
@@ -131,6 +132,7 @@ vtkSmartPointer<vtkFloatArray> CellsToPoints(vtkPolyData* surface, vtkFloatArray
 
 double GetLargestCell(vtkPolyData* surface)
 {
+  const PointPlaces places(surface);
   double largest = 0.0;
   for (vtkCellArray* cells : { surface->GetLines(), surface->GetPolys(), surface->GetStrips() })
   {
@@ -141,9 +143,7 @@ double GetLargestCell(vtkPolyData* surface)
       Eigen::AlignedBox3d box;
       for (const vtkIdType id : *ids)
       {
-        Eigen::Vector3d place;
-        surface->GetPoint(id, place.data());
-        box.extend(place);
+        box.extend(places(id));
       }
       largest = std::max(largest, ids->GetNumberOfIds() > 0 ? box.diagonal().squaredNorm() : 0.0);
     }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPolyDataSubbandNoise.h"
 
+#include "KeptByInput.h"
 #include "NoiseArrays.h"
 #include "NoiseBounds.h"
 #include "NoiseErrors.h"
@@ -41,6 +42,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkPolyDataSubbandNoise);
@@ -443,10 +445,6 @@ struct PointsKey
 /// What was found out about a surface of the input, good as long as what it depends on is the same.
 struct KeptSurface
 {
-  vtkMTimeType Time = 0;
-  const vtkDataArray* Texture = nullptr; // only compared
-  bool WrapSeams = false;
-
   std::optional<noise::CommonBounds> Bounds;
   double Diagonal = 0.0;
   std::optional<SurfaceSums> Sums; // with this diagonal
@@ -466,47 +464,12 @@ struct KeptSurface
     this->Counts = PointCounts();
   }
 };
-
-/// By datasets of the input, which are only compared: they may be gone.
-class KeptSurfaces
-{
-public:
-  /// Gives each block what is known of it, and drops what nobody asks for.
-  void Assign(std::vector<Block>& blocks, bool wrapSeams)
-  {
-    std::map<const vtkDataObject*, KeptSurface> before;
-    before.swap(this->Entries);
-    for (Block& block : blocks)
-    {
-      const auto known = before.find(block.Source);
-      KeptSurface& now = this->Entries[block.Source];
-      if (known != before.end())
-      {
-        now = std::move(known->second);
-        before.erase(known);
-      }
-      const vtkMTimeType time = block.Source->GetMTime();
-      if (now.Time != time || now.Texture != block.Texture || now.WrapSeams != wrapSeams)
-      {
-        now = KeptSurface();
-        now.Time = time;
-        now.Texture = block.Texture;
-        now.WrapSeams = wrapSeams;
-      }
-      block.Known = &now;
-    }
-  }
-
-  void Clear() { this->Entries.clear(); }
-
-private:
-  std::map<const vtkDataObject*, KeptSurface> Entries;
-};
 } // namespace
 
 struct vtkPolyDataSubbandNoise::Internals
 {
-  KeptSurfaces Kept;
+  /// By the texture coordinates, which are only compared, and WrapSeams.
+  noise::KeptByInput<KeptSurface, std::pair<const vtkDataArray*, bool>> Kept;
   TileCache TextureTiles;
   TileCache PlaneTiles;
   TileCache SeamTiles; // of planes that take over from a texture
@@ -1292,7 +1255,9 @@ int vtkPolyDataSubbandNoise::RequestData(
     attempt([&] { imageTiles = &this->Cache->GetImageTiles(vtkImageData::GetData(inputVector[1])); });
   }
   const bool blendSeams = this->BlendSeams && !ofImage;
-  this->Cache->Kept.Assign(blocks, this->WrapSeams);
+  this->Cache->Kept.Assign(blocks,
+    [this](const Block& block)
+    { return std::pair<const vtkDataArray*, bool>(block.Texture, this->WrapSeams); });
   for (const Block& block : blocks)
   {
     std::optional<noise::CommonBounds>& known = block.Known->Bounds;

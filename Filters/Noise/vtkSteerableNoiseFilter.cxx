@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSteerableNoiseFilter.h"
 
+#include "KeptByInput.h"
 #include "MetricTensor.h"
 #include "NoiseArrays.h"
 #include "NoiseBounds.h"
@@ -38,9 +39,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 vtkStandardNewMacro(vtkSteerableNoiseFilter);
@@ -54,7 +55,7 @@ struct KeptBlock;
 struct Block
 {
   vtkDataSet* DataSet = nullptr;
-  /// The input's, of which it is a shallow copy or a magnified image.
+  /// The input's, of which it is a shallow copy; a magnified image is its own.
   vtkDataObject* Source = nullptr;
   KeptBlock* Known = nullptr;
   vtkDataArray* Array = nullptr;
@@ -156,10 +157,6 @@ struct Extremes
 /// What was found out about a dataset of the input, good as long as what it depends on is the same.
 struct KeptBlock
 {
-  vtkMTimeType Time = 0;
-  bool Cells = false;
-  int Slab = -1;
-
   bool AreExtremesKnown = false;
   bool AreExtremesExact = false;
   Extremes Own;
@@ -369,35 +366,10 @@ private:
 };
 } // namespace
 
-/// By datasets of the input, which are only compared: they may be gone.
+/// By whether samples are in cells, and the slab that they are taken in.
 struct vtkSteerableNoiseFilter::KeptBlocks
 {
-  std::map<const vtkDataObject*, KeptBlock> Entries;
-
-  /// Gives each block what is known of it, and drops what nobody asks for.
-  void Assign(std::vector<Block>& blocks)
-  {
-    std::map<const vtkDataObject*, KeptBlock> before;
-    before.swap(this->Entries);
-    for (Block& block : blocks)
-    {
-      // A magnified image is made anew.
-      const vtkDataObject* source = block.Original ? block.DataSet : block.Source;
-      const vtkMTimeType time = block.Source->GetMTime();
-      const auto known = before.find(source);
-      KeptBlock& now = this->Entries[source];
-      if (known != before.end() && known->second.Time == time && known->second.Cells == block.Cells &&
-        known->second.Slab == block.Shape.Slab && !block.Original)
-      {
-        now = std::move(known->second);
-        before.erase(known);
-      }
-      now.Time = time;
-      now.Cells = block.Cells;
-      now.Slab = block.Shape.Slab;
-      block.Known = &now;
-    }
-  }
+  noise::KeptByInput<KeptBlock, std::pair<bool, int>> Blocks;
 };
 
 struct vtkSteerableNoiseFilter::Internals
@@ -763,7 +735,7 @@ void vtkSteerableNoiseFilter::SetKeepFields(bool keepFields)
   this->KeepFields = keepFields;
   if (!keepFields)
   {
-    this->Kept->Entries.clear();
+    this->Kept->Blocks.Clear();
   }
 }
 
@@ -896,7 +868,7 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     if (!this->KeepFields)
     {
-      kept->Entries.clear();
+      kept->Blocks.Clear();
     }
   };
   const std::unique_ptr<KeptBlocks, decltype(drop)> dropUnlessKept(this->Kept.get(), drop);
@@ -910,7 +882,7 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     Block block;
     block.DataSet = dataset;
-    block.Source = source;
+    block.Source = original ? dataset : source;
     std::string why;
     if (internals.FindArray(block, why))
     {
@@ -1034,7 +1006,8 @@ int vtkSteerableNoiseFilter::RequestData(
   {
     block.Shape = shape.Get(block.DataSet, block.Cells, whole);
   }
-  this->Kept->Assign(blocks);
+  this->Kept->Blocks.Assign(
+    blocks, [](const Block& block) { return std::make_pair(block.Cells, block.Shape.Slab); });
   Extremes extremes;
   for (const Block& block : blocks)
   {

@@ -8,6 +8,7 @@
  * Utilities/benchmark.sh, which prints ratios.
  */
 #include "LatticeHash.h"
+#include "BenchmarkFlow.h"
 #include "SteerableNoise.h"
 #include "Surflet.h"
 
@@ -29,6 +30,7 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -58,9 +60,8 @@ struct Image
       {
         for (std::int64_t i = 0; i < this->Grid.Dimensions[0]; ++i)
         {
-          this->Vectors.push_back(std::cos(0.013f * j + 0.02f * k));
-          this->Vectors.push_back(std::sin(0.011f * i));
-          this->Vectors.push_back(dimension == 2 ? 0.0f : 0.5f * std::sin(0.017f * (i + j)));
+          const auto flow = BenchmarkFlow(dimension, i, j, k);
+          this->Vectors.insert(this->Vectors.end(), flow.begin(), flow.end());
         }
       }
     }
@@ -235,9 +236,8 @@ vtkSmartPointer<vtkImageData> MakeVtkImage(int nx, int ny, int nz)
     const int i = id % nx;
     const int j = (id / nx) % ny;
     const int k = static_cast<int>(id / nx / ny);
-    v[3 * id] = std::cos(0.013f * j + 0.02f * k);
-    v[3 * id + 1] = std::sin(0.011f * i);
-    v[3 * id + 2] = nz == 1 ? 0.0f : 0.5f * std::sin(0.017f * (i + j));
+    const auto flow = BenchmarkFlow(nz == 1 ? 2 : 3, i, j, k);
+    std::copy(flow.begin(), flow.end(), v + 3 * id);
   }
   image->GetPointData()->SetVectors(vectors);
   return image;

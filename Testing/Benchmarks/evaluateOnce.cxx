@@ -7,6 +7,7 @@
  * have straight, the defaults in a constant flow, and isotropic, the defaults with Strength 0 and
  * without curvature.
  */
+#include "BenchmarkFlow.h"
 #include "SteerableNoise.h"
 
 #include <hwy/targets.h>
@@ -71,9 +72,8 @@ int main(int argc, char** argv)
           vectors.insert(vectors.end(), { 0.8f, 0.5f, dimension == 2 ? 0.0f : 0.3f });
           continue;
         }
-        vectors.push_back(std::cos(0.013f * j + 0.02f * k));
-        vectors.push_back(std::sin(0.011f * i));
-        vectors.push_back(dimension == 2 ? 0.0f : 0.5f * std::sin(0.017f * (i + j)));
+        const auto flow = BenchmarkFlow(dimension, i, j, k);
+        vectors.insert(vectors.end(), flow.begin(), flow.end());
       }
     }
   }

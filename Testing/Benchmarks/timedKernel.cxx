@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// One evaluation with the default look, as a module that besideCommit loads: one for each build of
 /// the kernel.
+#include "BenchmarkFlow.h"
 #include "SteerableNoise.h"
 
 #include <hwy/targets.h>
@@ -42,9 +43,8 @@ extern "C" __attribute__((visibility("default"))) double TimeKernel(
       {
         const double place[3] = { double(i), double(j), double(k) };
         positions.insert(positions.end(), place, place + 3);
-        vectors.push_back(std::cos(0.013f * j + 0.02f * k));
-        vectors.push_back(std::sin(0.011f * i));
-        vectors.push_back(dimension == 2 ? 0.0f : 0.5f * std::sin(0.017f * (i + j)));
+        const auto flow = BenchmarkFlow(dimension, i, j, k);
+        vectors.insert(vectors.end(), flow.begin(), flow.end());
       }
     }
   }

@@ -51,7 +51,16 @@ vtkSmartPointer<vtkImageData> Picture(
 using Filter = vtkImageSubbandDecomposition;
 using Configure = std::function<void(Filter*)>;
 
-vtkSmartPointer<vtkImageData> Decompose(vtkImageData* image, const Configure& configure = {})
+/// Its output, and how many errors and warnings there were.
+struct Result
+{
+  vtkSmartPointer<vtkImageData> Output;
+  int Errors;
+  int Warnings;
+  std::string Text;
+};
+
+Result Apply(vtkImageData* image, const Configure& configure)
 {
   vtkNew<Filter> filter;
   auto messages = Listen(filter);
@@ -61,23 +70,22 @@ vtkSmartPointer<vtkImageData> Decompose(vtkImageData* image, const Configure& co
     configure(filter);
   }
   filter->Update();
-  EXPECT_EQ(messages->Errors + messages->Warnings, 0) << messages->Text;
-  return filter->GetOutput();
+  return { filter->GetOutput(), messages->Errors, messages->Warnings, messages->Text };
+}
+
+vtkSmartPointer<vtkImageData> Decompose(vtkImageData* image, const Configure& configure = {})
+{
+  const Result result = Apply(image, configure);
+  EXPECT_EQ(result.Errors + result.Warnings, 0) << result.Text;
+  return result.Output;
 }
 
 std::string Refusal(vtkImageData* image, const Configure& configure = {})
 {
-  vtkNew<Filter> filter;
-  auto messages = Listen(filter);
-  filter->SetInputData(image);
-  if (configure)
-  {
-    configure(filter);
-  }
-  filter->Update();
-  EXPECT_EQ(messages->Errors, 1) << messages->Text;
-  EXPECT_EQ(filter->GetOutput()->GetNumberOfPoints(), 0);
-  return messages->Text;
+  const Result result = Apply(image, configure);
+  EXPECT_EQ(result.Errors, 1) << result.Text;
+  EXPECT_EQ(result.Output->GetNumberOfPoints(), 0);
+  return result.Text;
 }
 } // namespace
 

@@ -158,6 +158,22 @@ void ForBox(int half, Work&& work)
   }
 }
 
+/// Whether the row of a corner, cut for a lane, reaches it.
+template <class WalkT, int N>
+bool IsOnItsRow(
+  const WalkT& walk, const Reach<N>& reach, const std::array<int, 3>& corner, std::size_t lane)
+{
+  HWY_ALIGN float lows[Lanes];
+  HWY_ALIGN float highs[Lanes];
+  V low = Const(-1e9f);
+  V high = Const(1e9f);
+  CutRows(walk, reach, Const(static_cast<float>(corner[1])), Const(static_cast<float>(corner[2])),
+    low, high);
+  hn::Store(low, DF(), lows);
+  hn::Store(high, DF(), highs);
+  return lows[lane] <= corner[0] && corner[0] <= highs[lane];
+}
+
 /// Corners within q < 1 of a sample that its rows, cut for it alone, leave out.
 template <int N>
 testing::StageErrors CheckReachApart(unsigned seed)
@@ -166,8 +182,6 @@ testing::StageErrors CheckReachApart(unsigned seed)
   const CurvedTile<N> tile(seed, 0.1);
   const auto walk = tile.GetWalk();
   const Reach<N> reach = GetReachApart<N>(walk, 0);
-  HWY_ALIGN float lows[Lanes];
-  HWY_ALIGN float highs[Lanes];
   for (std::size_t lane = 0; lane < Lanes; ++lane)
   {
     ForBox<N>(9,
@@ -183,14 +197,8 @@ testing::StageErrors CheckReachApart(unsigned seed)
         {
           return;
         }
-        V low = Const(-1e9f);
-        V high = Const(1e9f);
-        CutRows(walk, reach, Const(static_cast<float>(corner[1])),
-          Const(static_cast<float>(corner[2])), low, high);
-        hn::Store(low, DF(), lows);
-        hn::Store(high, DF(), highs);
         ++errors.Checked;
-        errors.Lost += !(lows[lane] <= corner[0] && corner[0] <= highs[lane]);
+        errors.Lost += !IsOnItsRow(walk, reach, corner, lane);
       });
   }
   return errors;
@@ -213,8 +221,6 @@ testing::StageErrors CheckSpan(unsigned seed)
   FinishGroup(walk, extent, group);
   const Reach<N> reach(group, extent, hn::Abs(group.PlaceStep[0][0]));
   const Span<N> span(tile.Samples, corners, 0, end, group, extent);
-  HWY_ALIGN float lows[Lanes];
-  HWY_ALIGN float highs[Lanes];
   ForBox<N>(10,
     [&](const std::array<int, 3>& corner) HWY_ATTR
     {
@@ -227,14 +233,8 @@ testing::StageErrors CheckSpan(unsigned seed)
       {
         return;
       }
-      V low = Const(-1e9f);
-      V high = Const(1e9f);
-      CutRows(walk, reach, Const(static_cast<float>(corner[1])),
-        Const(static_cast<float>(corner[2])), low, high);
-      hn::Store(low, DF(), lows);
-      hn::Store(high, DF(), highs);
       ++errors.Checked;
-      errors.Lost += !(lows[0] <= corner[0] && corner[0] <= highs[0]);
+      errors.Lost += !IsOnItsRow(walk, reach, corner, 0);
       CornerList<N> list;
       list.Count = 1;
       for (int axis = 0; axis < N; ++axis)

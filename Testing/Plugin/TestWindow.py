@@ -69,7 +69,6 @@ def use_by_keys(environment, folder):
     if not shutil.which("xdotool") or not shutil.which("xwd"):
         print("skipped: xdotool and xwd are absent")
         return
-    environment = dict(environment, PV_PLUGIN_PATH=os.path.dirname(os.path.dirname(pt.PLUGIN)))
     paraview = subprocess.Popen([sys.argv[1], "--data=" + pt.WAKE], env=environment)
 
     def windows(by, pattern):
@@ -138,7 +137,6 @@ def use_panel(environment, folder):
         for event in events:
             file.write('<pqevent object="%s" command="%s" arguments="%s" />\n' % event)
         file.write("</pqevents>\n")
-    environment = dict(environment, PV_PLUGIN_PATH=os.path.dirname(os.path.dirname(pt.PLUGIN)))
     # What it prints goes to a file: a process that is killed leaves a pipe open to its children.
     with open(os.path.join(folder, "events.log"), "w+") as log:
         run = subprocess.Popen(
@@ -195,6 +193,7 @@ with tempfile.TemporaryDirectory() as folder:
         pt.check(low < -1.5 and high > 1.5, "noise in the window")
         pt.check(os.path.getsize(picture) > 5000, "a picture of the window")
     if version.major < 6:
+        environment["PV_PLUGIN_PATH"] = os.path.dirname(os.path.dirname(pt.PLUGIN))
         use_by_keys(environment, folder)
         use_panel(environment, folder)
     else:

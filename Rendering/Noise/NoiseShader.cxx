@@ -4,7 +4,6 @@
 
 #include "LatticeHash.h"
 #include "MetricTensor.h"
-#include "SteerableNoiseColorGlsl.h"
 #include "SteerableNoiseGlsl.h"
 #include "Surflet.h"
 
@@ -13,7 +12,6 @@
 #include "vtkMath.h"
 #include "vtkMatrix4x4.h"
 #include "vtkNew.h"
-#include "vtkProperty.h"
 #include "vtkRenderer.h"
 #include "vtkShaderProgram.h"
 
@@ -45,7 +43,7 @@ std::string GetDefines(const ShaderOptions& options, const ShaderVariant& varian
   os << "#define HASH_SEED " << HashSeed << "u\n#define HASH_JOIN " << HashJoin
      << "u\n#define HASH_AXIS_SHIFT " << HashAxisShift << "\n#define HASH_JOIN_SHIFT "
      << HashJoinShift << "\n#define LEVEL_SEED " << LevelSeed << "u\n#define NOISE_OCTAVES "
-     << model.Octaves << "\n#define NOISE_COLOR_MODE " << options.ColorMode << "\n"
+     << model.Octaves << "\n"
      << std::scientific << "#define VARIANCE_FLOOR " << VarianceFloor
      << "\n#define SURFACE_NORMAL_EIGENVALUE " << SurfaceNormalEigenvalue << "\n";
   os << (variant.Tensors ? "#define NOISE_TENSORS\n" : "")
@@ -56,31 +54,24 @@ std::string GetDefines(const ShaderOptions& options, const ShaderVariant& varian
   return os.str();
 }
 
-/// Puts `text` after a tag, which stays.
-void AddAfter(vtkShader* shader, const std::string& tag, const std::string& text)
-{
-  std::string source = shader->GetSource();
-  vtkShaderProgram::Substitute(source, tag, tag + "\n" + text, false);
-  shader->SetSource(source);
-}
-
 /// What the vertices give to the fragments.
-std::vector<std::string> GetVaryings(const ShaderVariant& variant)
+std::vector<Varying> GetVaryings(const ShaderVariant& variant)
 {
-  return variant.AtVertices ? std::vector<std::string>{ "noiseOfVertex" }
-    : variant.PerCell       ? std::vector<std::string>{ "noisePlace" }
-    : variant.Tensors ? std::vector<std::string>{ "noisePlace", "noiseSteering", "noiseSteering2" }
-                      : std::vector<std::string>{ "noisePlace", "noiseSteering", "noiseNormal", "noiseBend" };
-}
-
-std::string DeclareVaryings(const ShaderVariant& variant, const char* qualifier, const char* ending)
-{
-  std::string text;
-  for (const std::string& name : GetVaryings(variant))
+  if (variant.AtVertices)
   {
-    text += std::string(qualifier) + " vec3 " + name + ending + ";\n";
+    return { { "vec3", "noiseOfVertex" } };
   }
-  return text;
+  std::vector<Varying> varyings = { { "vec3", "noisePlace" } };
+  if (variant.Tensors && !variant.PerCell)
+  {
+    varyings.insert(varyings.end(), { { "vec3", "noiseSteering" }, { "vec3", "noiseSteering2" } });
+  }
+  else if (!variant.PerCell)
+  {
+    varyings.insert(varyings.end(),
+      { { "vec3", "noiseSteering" }, { "vec3", "noiseNormal" }, { "vec3", "noiseBend" } });
+  }
+  return varyings;
 }
 
 /// Places and what steers them, from the vertices or from a buffer with a line for each primitive.
@@ -106,23 +97,6 @@ const char* const VertexImplementation = R"(
   vec3 noiseOfVertex = vec3(noiseValue, noiseSteered ? 1.0 : 0.0, 0.0);
 #endif
 )";
-
-/// Edges and wide lines have a geometry shader, which has to pass on what the vertices say. VTK renames what the
-/// fragments read from VSOutput to GSOutput where there is one.
-std::string GetGeometryDeclarations(const ShaderVariant& variant)
-{
-  return DeclareVaryings(variant, "in", "VSOutput[]") + DeclareVaryings(variant, "out", "GSOutput");
-}
-
-std::string GetGeometryImplementation(const ShaderVariant& variant)
-{
-  std::string text;
-  for (const std::string& name : GetVaryings(variant))
-  {
-    text += "  " + name + "GSOutput = " + name + "VSOutput[i];\n";
-  }
-  return text + (variant.PerCell ? "  gl_PrimitiveID = gl_PrimitiveIDIn;\n" : "");
-}
 
 const char* const FragmentDeclarations = R"(
 #ifdef NOISE_CELLS
@@ -161,24 +135,6 @@ const char* const FragmentNoise = R"(
 #endif
 )";
 
-const char* const FragmentColor = R"(
-  if (noiseSteered)
-  {
-    ambientColor = ColorOf(ambientColor, noiseValue, noiseWhite.x);
-    diffuseColor = ColorOf(diffuseColor, noiseValue, noiseWhite.y);
-    opacity = OpacityOf(opacity, noiseValue);
-  }
-  else if (noiseMaskColor.a > 0.0)
-  {
-    ambientColor = noiseWhite.x * noiseMaskColor.rgb;
-    diffuseColor = noiseWhite.y * noiseMaskColor.rgb;
-  }
-)";
-
-const char* const FragmentOutputValue = R"(
-  gl_FragData[0] = vec4(noiseSteered ? ValueOf(noiseValue) : vec3(0.0), 1.0);
-)";
-
 /// A place as a corner of cells of `size` and what is left, for one axis.
 void SplitPlace(double place, double size, int& corner, float& rest)
 {
@@ -212,35 +168,15 @@ void SetUniform3(vtkShaderProgram* program, const char* name, const double (&val
 } // namespace
 
 void AddNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const ShaderOptions& options,
-  const ShaderVariant& variant)
+  const ColorOptions& color, const ShaderVariant& variant)
 {
   const std::string defines = GetDefines(options, variant);
   const std::string model = SteerableNoiseGlsl;
-  std::string vertexImplementation = VertexImplementation;
-  for (const std::string& name : GetVaryings(variant))
-  {
-    vertexImplementation += "  " + name + "VSOutput = " + name + ";\n";
-  }
-  vtkShader* vertex = shaders[vtkShader::Vertex];
-  AddAfter(vertex, "//VTK::PositionVC::Dec",
-    defines + VertexDeclarations + DeclareVaryings(variant, "out", "VSOutput") +
-      (variant.AtVertices ? model : ""));
-  AddAfter(vertex, "//VTK::PositionVC::Impl", vertexImplementation);
-  vtkShader* geometry = shaders[vtkShader::Geometry];
-  if (!geometry->GetSource().empty())
-  {
-    AddAfter(geometry, "//VTK::PositionVC::Dec", GetGeometryDeclarations(variant));
-    AddAfter(geometry, "//VTK::PositionVC::Impl", GetGeometryImplementation(variant));
-  }
-  vtkShader* fragment = shaders[vtkShader::Fragment];
-  AddAfter(fragment, "//VTK::PositionVC::Dec",
-    defines + FragmentDeclarations + DeclareVaryings(variant, "in", "VSOutput") +
-      (variant.AtVertices ? "" : model) + SteerableNoiseColorGlsl);
-  AddAfter(fragment, "//VTK::Color::Impl", std::string(FragmentNoise) + FragmentColor);
-  if (options.OutputValue)
-  {
-    AddAfter(fragment, "//VTK::Light::Impl", FragmentOutputValue);
-  }
+  AddVaryings(shaders, GetVaryings(variant),
+    defines + VertexDeclarations + (variant.AtVertices ? model : ""), VertexImplementation,
+    variant.PerCell ? "  gl_PrimitiveID = gl_PrimitiveIDIn;\n" : "");
+  AddColor(shaders[vtkShader::Fragment], color,
+    defines + FragmentDeclarations + (variant.AtVertices ? "" : model), FragmentNoise);
 }
 
 double GetScale(vtkActor* actor)
@@ -361,21 +297,5 @@ void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRen
   setFloat("noiseSpeed", model.Speed);
   setFloat("noiseCurvature", model.FollowCurvature ? 1.0 : 0.0);
   setInt("noiseSeed", static_cast<int>(model.Seed));
-
-  setFloat("noiseIntensity", options.Intensity);
-  setFloat("noiseContrast", options.Contrast);
-  if (program->IsUniformUsed("noiseMaskColor"))
-  {
-    const float color[4] = { static_cast<float>(options.MaskColor[0]),
-      static_cast<float>(options.MaskColor[1]), static_cast<float>(options.MaskColor[2]),
-      options.UseMaskColor ? 1.0f : 0.0f };
-    program->SetUniform4f("noiseMaskColor", color);
-  }
-  const float white[2] = { static_cast<float>(actor->GetProperty()->GetAmbient()),
-    static_cast<float>(actor->GetProperty()->GetDiffuse()) };
-  if (program->IsUniformUsed("noiseWhite"))
-  {
-    program->SetUniform2f("noiseWhite", white);
-  }
 }
 } // namespace noise

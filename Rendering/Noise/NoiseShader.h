@@ -6,6 +6,7 @@
 #ifndef NoiseShader_h
 #define NoiseShader_h
 
+#include "NoiseColor.h"
 #include "NoiseParameters.h"
 
 #include "vtkShader.h"
@@ -36,12 +37,6 @@ struct ShaderOptions
   double TimePeriod = 0.0;
   double Time = 0.0;
   bool VectorsPerCell = false;
-  int ColorMode = 0;
-  double Intensity = 0.8;
-  double Contrast = 1.0;
-  std::array<double, 3> MaskColor = { 0.5, 0.5, 0.5 };
-  bool UseMaskColor = false;
-  bool OutputValue = false;
 };
 
 /// What the source of the shader depends on; all else is uniforms.
@@ -55,7 +50,7 @@ struct ShaderVariant
 
 /// Adds the noise to the templates of a polydata mapper, before it fills them.
 void AddNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const ShaderOptions& options,
-  const ShaderVariant& variant);
+  const ColorOptions& color, const ShaderVariant& variant);
 
 inline bool operator==(const ShaderVariant& a, const ShaderVariant& b)
 {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSteerableNoiseMapper.h"
 
+#include "MapperOptions.h"
+#include "NoiseHelper.h"
 #include "NoiseShader.h"
 #include "SurfaceFields.h"
 
@@ -40,17 +42,6 @@
 #include <string>
 #include <vector>
 
-// VTK 9.3 gave the helper that draws all blocks another name and its own class for what belongs to a block.
-#if VTK_MAJOR_VERSION > 9 || (VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION >= 3)
-#include "vtkOpenGLBatchedPolyDataMapper.h"
-#include "vtkOpenGLCompositePolyDataMapperDelegator.h"
-using HelperSuperclass = vtkOpenGLBatchedPolyDataMapper;
-#define STEERABLENOISE_DELEGATOR
-#else
-#include "vtkCompositeMapperHelper2.h"
-using HelperSuperclass = vtkCompositeMapperHelper2;
-#endif
-
 /// Options, and what was found in the input.
 struct vtkSteerableNoiseMapper::Internals
 {
@@ -69,15 +60,16 @@ struct vtkSteerableNoiseMapper::Internals
     noise::LengthRange Lengths;
   };
 
+  explicit Internals(DrawnState& drawn)
+    : Drawn(drawn)
+  {
+  }
+
+  DrawnState& Drawn;
   noise::ShaderOptions Options;
   noise::ShaderVariant Variant;
-  vtkTimeStamp VariantTime;
   vtkTimeStamp ChosenTime;
-  /// When something that is uploaded changed.
-  vtkTimeStamp FieldsTime;
-  vtkTimeStamp UploadTime;
   std::map<vtkPolyData*, Block> Blocks;
-  bool AnyNoise = false;
   Extremes Own;
   vtkMTimeType OwnTime = 0;
   /// Over all ranks, where there are several.
@@ -121,7 +113,7 @@ struct vtkSteerableNoiseMapper::Internals
     if (!(variant == this->Variant))
     {
       this->Variant = variant;
-      this->VariantTime.Modified();
+      this->Drawn.VariantTime.Modified();
     }
   }
 
@@ -136,19 +128,18 @@ struct vtkSteerableNoiseMapper::Internals
     if (motion != this->Options.Model.Motion)
     {
       this->Options.Model.Motion = motion;
-      this->VariantTime.Modified();
+      this->Drawn.VariantTime.Modified();
     }
   }
 };
 
 namespace
 {
-/// A mapper of all blocks that adds the noise to its vertices and its shader.
-class vtkSteerableNoiseHelper : public HelperSuperclass
+class vtkSteerableNoiseHelper : public vtkNoiseHelper
 {
 public:
   static vtkSteerableNoiseHelper* New();
-  vtkTypeMacro(vtkSteerableNoiseHelper, HelperSuperclass);
+  vtkTypeMacro(vtkSteerableNoiseHelper, vtkNoiseHelper);
 
   void ReleaseGraphicsResources(vtkWindow* window) override
   {
@@ -161,96 +152,34 @@ public:
   }
 
 protected:
-#ifdef STEERABLENOISE_DELEGATOR
-  using BlockData = GLBatchElement;
-  static vtkPolyData* GetPolyData(const BlockData* block) { return block->Parent.PolyData; }
-  static void SetPolyData(BlockData* block, vtkPolyData* data) { block->Parent.PolyData = data; }
-  static void SetTranslucent(BlockData* block) { block->Parent.IsOpaque = false; }
-  template <class Visit>
-  void ForEachBlock(Visit&& visit)
-  {
-    for (auto& entry : this->VTKPolyDataToGLBatchElement)
-    {
-      visit(entry.second.get());
-    }
-  }
-#else
-  using BlockData = vtkCompositeMapperHelperData;
-  static vtkPolyData* GetPolyData(const BlockData* block) { return block->Data; }
-  static void SetPolyData(BlockData* block, vtkPolyData* data) { block->Data = data; }
-  static void SetTranslucent(BlockData* block) { block->IsOpaque = false; }
-  template <class Visit>
-  void ForEachBlock(Visit&& visit)
-  {
-    for (auto& entry : this->Data)
-    {
-      visit(entry.second);
-    }
-  }
-#endif
-
   vtkSteerableNoiseMapper::Internals& GetInternals()
   {
-    return static_cast<vtkSteerableNoiseMapper*>(static_cast<vtkObjectBase*>(this->Parent))
-      ->GetInternals();
+    return static_cast<vtkSteerableNoiseMapper*>(this->GetMapper())->GetInternals();
   }
 
-  /// Not on picks.
-  bool ShowsNoise(vtkRenderer* renderer)
+  void AddNoise(std::map<vtkShader::Type, vtkShader*>& shaders) override
   {
-    return this->GetInternals().AnyNoise && !renderer->GetSelector();
+    noise::AddNoise(
+      shaders, this->GetInternals().Options, this->GetDrawn().Color, this->GetInternals().Variant);
   }
 
-  bool GetNeedToRebuildBufferObjects(vtkRenderer* renderer, vtkActor* actor) override
+  void SetNoiseUniforms(vtkShaderProgram* program, vtkRenderer* renderer, vtkActor* actor,
+    const std::array<double, 3>& shift, const std::array<double, 3>& scale) override
   {
-    return this->Superclass::GetNeedToRebuildBufferObjects(renderer, actor) ||
-      this->VBOBuildTime < this->GetInternals().FieldsTime;
-  }
-
-  bool GetNeedToRebuildShaders(vtkOpenGLHelper& cells, vtkRenderer* renderer, vtkActor* actor) override
-  {
-    const bool rebuild = this->Superclass::GetNeedToRebuildShaders(cells, renderer, actor);
-    return rebuild || cells.ShaderSourceTime < this->GetInternals().VariantTime;
-  }
-
-  void ReplaceShaderValues(
-    std::map<vtkShader::Type, vtkShader*> shaders, vtkRenderer* renderer, vtkActor* actor) override
-  {
-    if (this->ShowsNoise(renderer) && !this->DrawingVertices)
-    {
-      noise::AddNoise(shaders, this->GetInternals().Options, this->GetInternals().Variant);
-    }
-    this->Superclass::ReplaceShaderValues(shaders, renderer, actor);
-  }
-
-  void SetMapperShaderParameters(
-    vtkOpenGLHelper& cells, vtkRenderer* renderer, vtkActor* actor) override
-  {
-    this->Superclass::SetMapperShaderParameters(cells, renderer, actor);
-    if (!cells.Program->IsUniformUsed("noiseVertexScale"))
+    if (!program->IsUniformUsed("noiseVertexScale"))
     {
       return;
     }
-    std::array<double, 3> shift = { 0.0, 0.0, 0.0 };
-    std::array<double, 3> scale = { 1.0, 1.0, 1.0 };
-    vtkOpenGLVertexBufferObject* places = this->VBOs->GetVBO("vertexMC");
-    if (places && places->GetCoordShiftAndScaleEnabled())
+    noise::SetUniforms(program, this->GetInternals().Options, renderer, actor, shift, scale);
+    if (this->CellTexture && program->IsUniformUsed("noiseCells"))
     {
-      std::copy_n(places->GetShift().begin(), 3, shift.begin());
-      std::copy_n(places->GetScale().begin(), 3, scale.begin());
-    }
-    noise::SetUniforms(
-      cells.Program, this->GetInternals().Options, renderer, actor, shift, scale);
-    if (this->CellTexture && cells.Program->IsUniformUsed("noiseCells"))
-    {
-      cells.Program->SetUniformi("noiseCells", this->CellTexture->GetTextureUnit());
+      program->SetUniformi("noiseCells", this->CellTexture->GetTextureUnit());
     }
   }
 
-  void SetShaderValues(vtkShaderProgram* program, BlockData* block, size_t firstPrimitive) override
+  void SetBlockUniforms(vtkShaderProgram* program, vtkPolyData* data, size_t firstPrimitive) override
   {
-    this->Superclass::SetShaderValues(program, block, firstPrimitive);
-    const auto* found = this->GetInternals().Find(GetPolyData(block));
+    const auto* found = this->GetInternals().Find(data);
     if (program->IsUniformUsed("noiseLongest"))
     {
       program->SetUniformf(
@@ -262,40 +191,26 @@ protected:
     }
   }
 
-  void RenderPieceStart(vtkRenderer* renderer, vtkActor* actor) override
+  void ActivateTextures() override
   {
-    this->Superclass::RenderPieceStart(renderer, actor);
     if (this->CellTexture && this->GetInternals().Variant.PerCell)
     {
       this->CellTexture->Activate();
     }
   }
 
-  void RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor) override
-  {
-    if (this->GetInternals().Options.ColorMode == vtkSteerableNoiseMapper::OPACITY)
-    {
-      this->ForEachBlock([](BlockData* block) { SetTranslucent(block); });
-    }
-    this->Superclass::RenderPieceDraw(renderer, actor);
-  }
-
-  void RenderPieceFinish(vtkRenderer* renderer, vtkActor* actor) override
+  void DeactivateTextures() override
   {
     if (this->CellTexture && this->GetInternals().Variant.PerCell)
     {
       this->CellTexture->Deactivate();
     }
-    this->Superclass::RenderPieceFinish(renderer, actor);
   }
 
-  void BuildBufferObjects(vtkRenderer* renderer, vtkActor* actor) override
+  void BeginVertices() override { this->CellLines.clear(); }
+
+  void EndVertices(vtkOpenGLRenderWindow* window) override
   {
-    this->CellLines.clear();
-    this->OwnVertices.clear();
-    this->Superclass::BuildBufferObjects(renderer, actor);
-    this->OwnVertices.clear();
-    this->GetInternals().UploadTime.Modified();
     if (!this->CellLines.empty())
     {
       if (!this->CellTexture)
@@ -304,8 +219,7 @@ protected:
         this->CellBuffer = vtkSmartPointer<vtkOpenGLBufferObject>::New();
         this->CellBuffer->SetType(vtkOpenGLBufferObject::TextureBuffer);
       }
-      this->CellTexture->SetContext(
-        static_cast<vtkOpenGLRenderWindow*>(renderer->GetRenderWindow()));
+      this->CellTexture->SetContext(window);
       this->CellBuffer->Upload(this->CellLines, vtkOpenGLBufferObject::TextureBuffer);
       this->CellTexture->CreateTextureBuffer(static_cast<unsigned int>(this->CellLines.size() / 4),
         4, VTK_FLOAT, this->CellBuffer);
@@ -313,43 +227,9 @@ protected:
     }
   }
 
-  void AppendOneBufferObject(vtkRenderer* renderer, vtkActor* actor, BlockData* block,
-    vtkIdType& offset, std::vector<unsigned char>& colors, std::vector<float>& normals) override
+  void AppendVertices(vtkPolyData* data, vtkIdType count, vtkActor* actor) override
   {
-    vtkPolyData* data = GetPolyData(block);
     const auto& internals = this->GetInternals();
-    if (!data->GetPoints() || data->GetNumberOfPoints() == 0 || !internals.AnyNoise)
-    {
-      this->Superclass::AppendOneBufferObject(renderer, actor, block, offset, colors, normals);
-      return;
-    }
-    vtkDataArray* places = data->GetPoints()->GetData();
-    vtkIdType first = 0;
-    vtkIdType before = 0;
-    vtkIdType after = 0;
-    if (this->VBOs->ArrayExists("vertexMC", places, first, before))
-    {
-      // Another block has the same points. The superclass would use its vertices, with its vectors and
-      // normals: points of its own make it append them again.
-      vtkNew<vtkPolyData> own;
-      own->ShallowCopy(data);
-      vtkSmartPointer<vtkDataArray> copy;
-      copy.TakeReference(places->NewInstance());
-      copy->ShallowCopy(places);
-      vtkNew<vtkPoints> points;
-      points->SetData(copy);
-      own->SetPoints(points);
-      this->OwnVertices.emplace_back(own.Get());
-      SetPolyData(block, own);
-      this->Superclass::AppendOneBufferObject(renderer, actor, block, offset, colors, normals);
-      SetPolyData(block, data);
-    }
-    else
-    {
-      this->Superclass::AppendOneBufferObject(renderer, actor, block, offset, colors, normals);
-    }
-    this->VBOs->ArrayExists("vertexMC", places, first, after);
-    const vtkIdType count = after - before;
     const auto* found = internals.Find(data);
     if (internals.Variant.PerCell)
     {
@@ -424,69 +304,23 @@ private:
   vtkSmartPointer<vtkTextureObject> CellTexture;
   vtkSmartPointer<vtkOpenGLBufferObject> CellBuffer;
   std::vector<float> CellLines;
-  std::vector<vtkSmartPointer<vtkPolyData>> OwnVertices;
 };
 vtkStandardNewMacro(vtkSteerableNoiseHelper);
-
-#ifdef STEERABLENOISE_DELEGATOR
-class vtkSteerableNoiseDelegator : public vtkOpenGLCompositePolyDataMapperDelegator
-{
-public:
-  static vtkSteerableNoiseDelegator* New();
-  vtkTypeMacro(vtkSteerableNoiseDelegator, vtkOpenGLCompositePolyDataMapperDelegator);
-
-protected:
-  vtkSteerableNoiseDelegator()
-  {
-    this->GLDelegate = vtkSteerableNoiseHelper::New();
-    this->Delegate = vtk::TakeSmartPointer(this->GLDelegate);
-  }
-};
-vtkStandardNewMacro(vtkSteerableNoiseDelegator);
-#endif
-
-template <class Visit>
-void ForEachPolyData(vtkDataObject* input, Visit&& visit)
-{
-  if (auto* composite = vtkCompositeDataSet::SafeDownCast(input))
-  {
-    vtkSmartPointer<vtkCompositeDataIterator> iterator;
-    iterator.TakeReference(composite->NewIterator());
-    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
-    {
-      if (auto* data = vtkPolyData::SafeDownCast(iterator->GetCurrentDataObject()))
-      {
-        visit(data);
-      }
-    }
-  }
-  else if (auto* data = vtkPolyData::SafeDownCast(input))
-  {
-    visit(data);
-  }
-}
 } // namespace
 
 vtkStandardNewMacro(vtkSteerableNoiseMapper);
 
 vtkSteerableNoiseMapper::vtkSteerableNoiseMapper()
-  : Internal(new Internals)
+  : Internal(new Internals(this->GetDrawn()))
 {
 }
 
 vtkSteerableNoiseMapper::~vtkSteerableNoiseMapper() = default;
 
-#ifdef STEERABLENOISE_DELEGATOR
-vtkCompositePolyDataMapperDelegator* vtkSteerableNoiseMapper::CreateADelegator()
-{
-  return vtkSteerableNoiseDelegator::New();
-}
-#else
-vtkCompositeMapperHelper2* vtkSteerableNoiseMapper::CreateHelper()
+vtkNoiseHelper* vtkSteerableNoiseMapper::MakeHelper()
 {
   return vtkSteerableNoiseHelper::New();
 }
-#endif
 
 void vtkSteerableNoiseMapper::FindFields()
 {
@@ -494,13 +328,13 @@ void vtkSteerableNoiseMapper::FindFields()
   vtkDataObject* input = this->GetInputDataObject(0, 0);
   std::map<vtkPolyData*, Internals::Block> blocks;
   noise::ShaderVariant variant;
-  internals.AnyNoise = false;
+  internals.Drawn.AnyNoise = false;
   bool changed = false;
   const vtkMTimeType chosen = std::max(
     this->GetInputArrayInformation(0)->GetMTime(), internals.ChosenTime.GetMTime());
   // Of the composite too: a block may have gone.
   vtkMTimeType newest = std::max(input ? input->GetMTime() : 0, chosen);
-  ForEachPolyData(input, [&](vtkPolyData* data) { newest = std::max(newest, data->GetMTime()); });
+  noise::ForEachPolyData(input, [&](vtkPolyData* data) { newest = std::max(newest, data->GetMTime()); });
   if (newest != internals.OwnTime)
   {
     internals.OwnTime = newest;
@@ -514,7 +348,7 @@ void vtkSteerableNoiseMapper::FindFields()
   }
   const double limit = internals.GetExtremes().Lengths.Limit;
   std::string why;
-  ForEachPolyData(input,
+  noise::ForEachPolyData(input,
     [&](vtkPolyData* data)
     {
       if (data->GetNumberOfPoints() == 0)
@@ -532,7 +366,7 @@ void vtkSteerableNoiseMapper::FindFields()
       }
       const bool perCell = cells && internals.Options.VectorsPerCell;
       const bool tensors = array->GetNumberOfComponents() > 3;
-      if (internals.AnyNoise && (tensors != variant.Tensors || perCell != variant.PerCell))
+      if (internals.Drawn.AnyNoise && (tensors != variant.Tensors || perCell != variant.PerCell))
       {
         return; // one kind at a time: the first block's
       }
@@ -554,17 +388,17 @@ void vtkSteerableNoiseMapper::FindFields()
       }
       variant.Tensors = tensors;
       variant.PerCell = perCell;
-      internals.AnyNoise = true;
+      internals.Drawn.AnyNoise = true;
     });
   changed |= blocks.size() < internals.Blocks.size();
   internals.Blocks.swap(blocks);
   if (changed)
   {
-    internals.FieldsTime.Modified();
+    internals.Drawn.FieldsTime.Modified();
   }
   variant.AtVertices = internals.Variant.AtVertices; // the view decides
   internals.SetVariant(variant);
-  if (!internals.AnyNoise && !why.empty() && internals.WarningTime != newest)
+  if (!internals.Drawn.AnyNoise && !why.empty() && internals.WarningTime != newest)
   {
     internals.WarningTime = newest;
     vtkWarningMacro(<< why << " Until then the surface shows its own colours.");
@@ -608,35 +442,11 @@ void vtkSteerableNoiseMapper::Render(vtkRenderer* renderer, vtkActor* actor)
   this->Superclass::Render(renderer, actor);
 }
 
-// Options that are drawn, not computed from: they leave the modification time alone, which would upload all
-// vertices again. Those that the source of the shader depends on (`VARIANT`) have it made anew.
 #define STEERABLENOISE_OPTION(name, type, member, value, AFTER)                                    \
-  void vtkSteerableNoiseMapper::Set##name(type name)                                               \
-  {                                                                                                \
-    const auto wanted = value;                                                                     \
-    if (!(this->Internal->Options.member == wanted))                                               \
-    {                                                                                              \
-      this->Internal->Options.member = wanted;                                                     \
-      AFTER;                                                                                       \
-    }                                                                                              \
-  }                                                                                                \
-  type vtkSteerableNoiseMapper::Get##name()                                                        \
-  {                                                                                                \
-    return static_cast<type>(this->Internal->Options.member);                                      \
-  }
+  NOISE_OPTION(vtkSteerableNoiseMapper, name, type, this->Internal->Options.member, value, AFTER)
 #define STEERABLENOISE_DRAWN(name, member, low, high)                                              \
-  STEERABLENOISE_OPTION(name, double, member, Clamp(name, low, high), )
-#define VARIANT this->Internal->VariantTime.Modified()
-
-namespace
-{
-/// NaN becomes the lower limit.
-template <class T>
-T Clamp(T value, T low, T high)
-{
-  return value >= low ? std::min(value, high) : low;
-}
-} // namespace
+  STEERABLENOISE_OPTION(name, double, member, noise::Clamp(name, low, high), )
+#define VARIANT this->GetDrawn().VariantTime.Modified()
 
 STEERABLENOISE_DRAWN(FeaturePixels, FeaturePixels, 1.0, 100.0)
 STEERABLENOISE_DRAWN(FeatureSize, FeatureSize, 0.0, VTK_DOUBLE_MAX)
@@ -646,32 +456,24 @@ STEERABLENOISE_DRAWN(Strength, Model.Strength, 0.0, 1.0)
 STEERABLENOISE_DRAWN(ReferenceMagnitude, ReferenceMagnitude, 0.0, VTK_DOUBLE_MAX)
 STEERABLENOISE_DRAWN(MaskThreshold, Model.MaskThreshold, 0.0, VTK_DOUBLE_MAX)
 STEERABLENOISE_OPTION(MaskUpperThreshold, double, MaskUpperThreshold,
-  Clamp(MaskUpperThreshold, 0.0, VTK_DOUBLE_MAX), this->Internal->ChosenTime.Modified())
+  noise::Clamp(MaskUpperThreshold, 0.0, VTK_DOUBLE_MAX), this->Internal->ChosenTime.Modified())
 STEERABLENOISE_DRAWN(Density, Model.Density, 0.01, 1.0)
 STEERABLENOISE_DRAWN(Speed, Model.Speed, -4.0, 4.0)
 STEERABLENOISE_DRAWN(Lacunarity, Model.Lacunarity, 1.0, 8.0)
 STEERABLENOISE_DRAWN(Gain, Model.Gain, 0.0, 1.0)
-STEERABLENOISE_DRAWN(NoiseIntensity, Intensity, 0.0, 1.0)
-STEERABLENOISE_DRAWN(NoiseContrast, Contrast, 0.0, 10.0)
 STEERABLENOISE_DRAWN(Time, Time, -VTK_DOUBLE_MAX, VTK_DOUBLE_MAX)
 STEERABLENOISE_OPTION(Phase, double, Phase,
   std::isfinite(Phase) ? Phase - std::floor(Phase) : 0.0, this->Internal->SetMotion())
-STEERABLENOISE_OPTION(TimePeriod, double, TimePeriod, Clamp(TimePeriod, 0.0, VTK_DOUBLE_MAX),
+STEERABLENOISE_OPTION(TimePeriod, double, TimePeriod, noise::Clamp(TimePeriod, 0.0, VTK_DOUBLE_MAX),
   this->Internal->SetMotion())
 STEERABLENOISE_OPTION(Animate, bool, Animate, Animate, this->Internal->SetMotion())
 STEERABLENOISE_OPTION(FollowCurvature, bool, Model.FollowCurvature, FollowCurvature, )
-STEERABLENOISE_OPTION(UseMaskColor, bool, UseMaskColor, UseMaskColor, )
 STEERABLENOISE_OPTION(Seed, int, Model.Seed, static_cast<std::uint32_t>(Seed), )
-STEERABLENOISE_OPTION(Octaves, int, Model.Octaves, Clamp(Octaves, 1, 8), VARIANT)
-STEERABLENOISE_OPTION(OutputValue, bool, OutputValue, OutputValue, VARIANT)
+STEERABLENOISE_OPTION(Octaves, int, Model.Octaves, noise::Clamp(Octaves, 1, 8), VARIANT)
 STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthBy,
   StrengthMode == MAGNITUDE ? steerable::StrengthMode::Magnitude : steerable::StrengthMode::Constant, )
 STEERABLENOISE_OPTION(Basis, int, Model.Surflet,
   Basis == STREAKS ? steerable::Basis::Streaks : steerable::Basis::Gradient, VARIANT)
-// Decides on which pass the geometry is drawn, too.
-STEERABLENOISE_OPTION(NoiseColorMode, int, ColorMode, Clamp<int>(NoiseColorMode, MULTIPLY, OPACITY),
-  VARIANT;
-  this->Modified())
 STEERABLENOISE_OPTION(VectorsPerCell, bool, VectorsPerCell, VectorsPerCell,
   this->Internal->ChosenTime.Modified())
 
@@ -690,23 +492,12 @@ int vtkSteerableNoiseMapper::GetFeatureSizeMode()
   return this->Internal->Options.Pixels ? PIXELS : WORLD;
 }
 
-void vtkSteerableNoiseMapper::SetMaskColor(double red, double green, double blue)
-{
-  this->Internal->Options.MaskColor = { Clamp(red, 0.0, 1.0), Clamp(green, 0.0, 1.0),
-    Clamp(blue, 0.0, 1.0) };
-}
-
-void vtkSteerableNoiseMapper::GetMaskColor(double color[3])
-{
-  std::copy_n(this->Internal->Options.MaskColor.begin(), 3, color);
-}
-
 vtkSteerableNoiseMapper::Internals::Extremes vtkSteerableNoiseMapper::Internals::FindExtremes(
   vtkDataObject* input, vtkInformation* choice, vtkMultiProcessController* controller) const
 {
   Extremes extremes;
   std::vector<vtkDataArray*> arrays;
-  ForEachPolyData(input,
+  noise::ForEachPolyData(input,
     [&](vtkPolyData* data)
     {
       bool cells = false;
@@ -745,11 +536,6 @@ void vtkSteerableNoiseMapper::ShareExtremes(vtkSteerableNoiseMapper* other)
 {
   this->Internal->Shared = other->Internal->Shared;
   this->Internal->AreShared = other->Internal->AreShared;
-}
-
-vtkMTimeType vtkSteerableNoiseMapper::GetUploadTime()
-{
-  return this->Internal->UploadTime;
 }
 
 bool vtkSteerableNoiseMapper::SetOptionsFrom(vtkSteerableNoiseFilter* filter)
@@ -802,17 +588,6 @@ bool vtkSteerableNoiseMapper::SetOptionsFrom(vtkSteerableNoiseFilter* filter)
   return true;
 }
 
-bool vtkSteerableNoiseMapper::HasOpaqueGeometry()
-{
-  return this->Internal->Options.ColorMode != OPACITY && this->Superclass::HasOpaqueGeometry();
-}
-
-bool vtkSteerableNoiseMapper::HasTranslucentPolygonalGeometry()
-{
-  return this->Internal->Options.ColorMode == OPACITY ||
-    this->Superclass::HasTranslucentPolygonalGeometry();
-}
-
 void vtkSteerableNoiseMapper::ShallowCopy(vtkAbstractMapper* mapper)
 {
   if (auto* other = vtkSteerableNoiseMapper::SafeDownCast(mapper))
@@ -848,9 +623,5 @@ void vtkSteerableNoiseMapper::PrintSelf(ostream& os, vtkIndent indent)
      << indent << "Lacunarity: " << this->GetLacunarity() << "\n"
      << indent << "Gain: " << this->GetGain() << "\n"
      << indent << "Seed: " << this->GetSeed() << "\n"
-     << indent << "VectorsPerCell: " << this->GetVectorsPerCell() << "\n"
-     << indent << "NoiseColorMode: " << this->GetNoiseColorMode() << "\n"
-     << indent << "NoiseIntensity: " << this->GetNoiseIntensity() << "\n"
-     << indent << "NoiseContrast: " << this->GetNoiseContrast() << "\n"
-     << indent << "UseMaskColor: " << this->GetUseMaskColor() << "\n";
+     << indent << "VectorsPerCell: " << this->GetVectorsPerCell() << "\n";
 }

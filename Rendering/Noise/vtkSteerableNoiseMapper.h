@@ -28,41 +28,24 @@
 #define vtkSteerableNoiseMapper_h
 
 #include "SteerableNoiseRenderingModule.h" // For export macro
-#include "vtkVersionMacros.h"              // For the superclass
-
-// VTK 9.3 moved what draws blocks into a delegator; before, the mapper had it as a helper.
-#if VTK_MAJOR_VERSION > 9 || (VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION >= 3)
-#include "vtkCompositePolyDataMapper.h"
-using vtkSteerableNoiseMapperSuperclass = vtkCompositePolyDataMapper;
-#else
-#include "vtkCompositePolyDataMapper2.h"
-using vtkSteerableNoiseMapperSuperclass = vtkCompositePolyDataMapper2;
-#endif
+#include "vtkSurfaceNoiseMapper.h"
 
 #include <memory> // For std::unique_ptr
 
 class vtkMultiProcessController;
 class vtkSteerableNoiseFilter;
 
-class STEERABLENOISERENDERING_EXPORT vtkSteerableNoiseMapper
-  : public vtkSteerableNoiseMapperSuperclass
+class STEERABLENOISERENDERING_EXPORT vtkSteerableNoiseMapper : public vtkSurfaceNoiseMapper
 {
 public:
   static vtkSteerableNoiseMapper* New();
-  vtkTypeMacro(vtkSteerableNoiseMapper, vtkSteerableNoiseMapperSuperclass);
+  vtkTypeMacro(vtkSteerableNoiseMapper, vtkSurfaceNoiseMapper);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum FeatureSizeModeType
   {
     PIXELS = 0,
     WORLD = 1
-  };
-  enum NoiseColorModeType
-  {
-    MULTIPLY = 0,
-    BLEND = 1,
-    LIGHTNESS = 2,
-    OPACITY = 3
   };
   enum StrengthModeType
   {
@@ -223,52 +206,6 @@ public:
   vtkBooleanMacro(VectorsPerCell, bool);
   ///@}
 
-  ///@{
-  /**
-   * How noise changes the colour of the surface. MULTIPLY, the default: darkens it; BLEND: mixes it with grey
-   * (Surface LIC's meaning); LIGHTNESS: changes the lightness only, so that a colour map stays readable;
-   * OPACITY: dark places become transparent.
-   */
-  void SetNoiseColorMode(int mode);
-  int GetNoiseColorMode();
-  ///@}
-
-  ///@{
-  /// 0: no noise, 1: full; default 0.8.
-  void SetNoiseIntensity(double intensity);
-  double GetNoiseIntensity();
-  ///@}
-
-  ///@{
-  /// Factor of the noise before it becomes a grey value, 0 to 10, default 1.
-  void SetNoiseContrast(double contrast);
-  double GetNoiseContrast();
-  ///@}
-
-  ///@{
-  /// Colour of the places that show no noise, with UseMaskColor; default grey .5.
-  void SetMaskColor(double red, double green, double blue);
-  void SetMaskColor(const double color[3]) { this->SetMaskColor(color[0], color[1], color[2]); }
-  void GetMaskColor(double color[3]);
-  ///@}
-
-  ///@{
-  /// Default off: places without noise show the surface's own colour.
-  void SetUseMaskColor(bool use);
-  bool GetUseMaskColor();
-  vtkBooleanMacro(UseMaskColor, bool);
-  ///@}
-
-  ///@{
-  /**
-   * For programs that read noise back: the picture holds (noise + 8) / 16 as 24 bits in red, green and blue, without
-   * light, and is black where there is no noise. Default off.
-   */
-  void SetOutputValue(bool value);
-  bool GetOutputValue();
-  vtkBooleanMacro(OutputValue, bool);
-  ///@}
-
   /**
    * Takes the options of a filter, with FeatureSizeMode WORLD. Options that fragments do not have (the window of the
    * lattice, other bases, normalizations, fades, falloffs, lattices and gradients, Period, Turbulence) are refused:
@@ -284,18 +221,7 @@ public:
   /// Takes what another mapper shares.
   void ShareExtremes(vtkSteerableNoiseMapper* other);
 
-  /**
-   * When the vertices, with their vectors, were last uploaded, of all windows; 0: never. Options leave it alone.
-   */
-  vtkMTimeType GetUploadTime();
-
   void Render(vtkRenderer* renderer, vtkActor* actor) override;
-
-  ///@{
-  /// The superclass's, but translucent with OPACITY.
-  bool HasOpaqueGeometry() override;
-  bool HasTranslucentPolygonalGeometry() override;
-  ///@}
 
   void ShallowCopy(vtkAbstractMapper* mapper) override;
 
@@ -306,11 +232,7 @@ protected:
   vtkSteerableNoiseMapper();
   ~vtkSteerableNoiseMapper() override;
 
-#if VTK_MAJOR_VERSION > 9 || (VTK_MAJOR_VERSION == 9 && VTK_MINOR_VERSION >= 3)
-  vtkCompositePolyDataMapperDelegator* CreateADelegator() override;
-#else
-  vtkCompositeMapperHelper2* CreateHelper() override;
-#endif
+  vtkNoiseHelper* MakeHelper() override;
 
   /// Finds or computes what steers the noise of each block of the input.
   void FindFields();

@@ -276,6 +276,31 @@ SubbandTiles MakeSubbandTiles(const SubbandParameters& parameters)
   return tiles;
 }
 
+std::vector<float> MakeScaleTiles(const SubbandParameters& parameters, int scale, int size)
+{
+  parameters.Validate();
+  // A band ends an octave above its centre.
+  if (scale < 0 || scale >= parameters.Scales ||
+    size < 4.0 * std::ldexp(parameters.CenterFrequency(), -scale))
+  {
+    throw std::invalid_argument("Subband noise: the tile is too small for the scale.");
+  }
+  const int components = parameters.Orientations;
+  // Each frequency keeps its amplitude; white noise of unit variance shares it among more of them.
+  const double amplitude = static_cast<double>(size) / parameters.TileSize;
+  std::vector<float> values(static_cast<std::size_t>(size) * size * components);
+  for (int i = 0; i < components; ++i)
+  {
+    const std::vector<Complex> band = SynthesizeNoise(size, parameters.Seed, parameters.Realization,
+      [&](int kx, int ky) { return amplitude * SubbandFilter(parameters, i, scale, kx, ky); });
+    for (std::size_t texel = 0; texel < band.size(); ++texel)
+    {
+      values[texel * components + i] = static_cast<float>(band[texel].real());
+    }
+  }
+  return values;
+}
+
 std::vector<float> MakeResidualTiles(const SubbandParameters& parameters)
 {
   parameters.Validate();

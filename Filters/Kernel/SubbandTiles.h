@@ -87,6 +87,13 @@ std::vector<std::complex<double>> SynthesizeNoise(int size, std::uint32_t seed,
 SubbandTiles MakeSubbandTiles(const SubbandParameters& parameters);
 
 /**
+ * One scale of the same tiles with another number of texels: size*size texels of K floats, orientation
+ * fastest, with the values of MakeSubbandTiles between its texels too. Throws std::invalid_argument for parameters out
+ * of range, and where `size` is less than two texels for the scale's shortest wave.
+ */
+std::vector<float> MakeScaleTiles(const SubbandParameters& parameters, int scale, int size);
+
+/**
  * What the bands leave of the spectrum: N*N texels of two floats, what is finer than the finest
  * band in its corner of the plane, and what is coarser than the coarsest, with the mean. The sum of
  * all bands and these two is white noise of variance one. Throws std::invalid_argument for
@@ -142,6 +149,12 @@ SubbandTiles BlendTiles(
  * first alone the second half of the loop is the negative of the first.
  */
 std::array<double, 4> LoopWeights(double phase);
+
+/// The realization that LoopWeights' term `m` weighs, of the tiles of one of several independent planes.
+constexpr int LoopRealization(int plane, int m)
+{
+  return 4 * plane + m;
+}
 
 /**
  * A shift of the texture coordinates, in [0, 1)^2, different for each index. An octave of noise is

@@ -310,7 +310,7 @@ public:
     {
       for (int m = 0; m < 4; ++m)
       {
-        const int realization = 4 * (first + plane) + m;
+        const int realization = steerable::LoopRealization(first + plane, m);
         if (Counts(loop[m]) && !this->Realizations.count(realization))
         {
           missing.push_back(realization);
@@ -341,7 +341,7 @@ public:
       {
         if (Counts(loop[m]))
         {
-          tiles.push_back(&this->Realizations.at(4 * (first + plane) + m));
+          tiles.push_back(&this->Realizations.at(steerable::LoopRealization(first + plane, m)));
           weights.push_back(loop[m]);
         }
       }
@@ -541,7 +541,7 @@ struct Evaluator
   bool AntiAlias;
   std::uint32_t Seed;
 
-  /// Output arrays; all but the first may be null.
+  /// Output arrays; they may be null.
   float* Noise = nullptr;
   float* WeightArray = nullptr;
   float* Distortion = nullptr;
@@ -674,7 +674,11 @@ struct Evaluator
       {
         this->Weigh(chunk.Planes[which], which, first);
       }
-      this->SumOctaves(chunk.Planes, first, last - first);
+      this->CopyWeights(chunk.Planes, first);
+      if (this->Noise)
+      {
+        this->SumOctaves(chunk.Planes, first, last - first);
+      }
       if (this->NeedsDistortion)
       {
         std::copy(chunk.Distortion.begin(), chunk.Distortion.end(), this->Distortion + first);
@@ -894,9 +898,24 @@ struct Evaluator
     }
   }
 
-  void SumOctaves(const std::vector<PlanePoints>& planes, vtkIdType first, vtkIdType count) const
+  /// Those of the first octave, if they are asked for.
+  void CopyWeights(const std::vector<PlanePoints>& planes, vtkIdType first) const
   {
     const vtkIdType tuple = this->GetFirstComponent(planes.size());
+    for (std::size_t which = 0; this->WeightArray && which < planes.size(); ++which)
+    {
+      const PlanePoints& plane = planes[which];
+      const int components = this->Lookups[which].Tiles->Components();
+      for (std::size_t n = 0; n < plane.Points.size(); ++n)
+      {
+        std::copy_n(plane.Weights[0].data() + n * components, components,
+          this->WeightArray + (first + plane.Points[n]) * tuple + this->GetFirstComponent(which));
+      }
+    }
+  }
+
+  void SumOctaves(const std::vector<PlanePoints>& planes, vtkIdType first, vtkIdType count) const
+  {
     std::vector<double> uv;
     std::vector<float> values;
     std::array<float, ChunkSize> sum{};
@@ -912,7 +931,6 @@ struct Evaluator
       {
         const PlanePoints& plane = planes[which];
         const steerable::SubbandTiles& tiles = *this->Lookups[which].Tiles;
-        const int components = tiles.Components();
         const std::vector<float>& weights =
           plane.Weights[std::min<std::size_t>(octave, this->GetWeightedOctaves() - 1)];
         const std::size_t points = plane.Points.size();
@@ -928,11 +946,6 @@ struct Evaluator
         for (std::size_t n = 0; n < points; ++n)
         {
           noise[plane.Points[n]] += values[n];
-          if (this->WeightArray && octave == 0)
-          {
-            std::copy_n(weights.data() + n * components, components,
-              this->WeightArray + (first + plane.Points[n]) * tuple + this->GetFirstComponent(which));
-          }
         }
       }
       for (vtkIdType n = 0; n < count; ++n)
@@ -1383,7 +1396,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   if (wavelength <= 0.0)
   {
     wavelength = std::max(bounds.GetSizeInPicture(0.02),
-      noise::SnapSize(PointsPerWavelength * spacing * std::sqrt(wanted)));
+      this->WeightsOnly ? 0.0 : noise::SnapSize(PointsPerWavelength * spacing * std::sqrt(wanted)));
     wavelength = wavelength > 0.0 ? wavelength : 1.0;
   }
   this->ResolvedWavelength = wavelength;
@@ -1471,6 +1484,11 @@ int vtkPolyDataSubbandNoise::RequestData(
       layouts[1].Pyramid = imageTiles->Parameters;
     }
     textureRepeats = layouts[1].Repeats;
+    this->TextureRepeats = textureRepeats;
+    this->PlaneRepeats = layouts[0].Repeats;
+    steerable::SubbandTiles noTiles[2]; // of weights alone
+    noTiles[0].Parameters = layouts[0].Pyramid;
+    noTiles[1].Parameters = layouts[1].Pyramid;
     std::unique_ptr<steerable::SubbandWeights> solvers[2];
     const auto method = static_cast<steerable::WeightMethod>(this->Method);
     const bool wholeImage = ofImage && method == steerable::WeightMethod::None;
@@ -1505,6 +1523,12 @@ int vtkPolyDataSubbandNoise::RequestData(
           lookups.push_back({ &layout, solvers[ofTexture].get(), imageTiles });
           return;
         }
+        if (this->WeightsOnly)
+        {
+          lookups.insert(lookups.end(), ofTexture ? 1 : 3,
+            Lookup{ &layout, solvers[ofTexture].get(), &noTiles[ofTexture] });
+          return;
+        }
         TileCache& cache = ofTexture ? this->Cache->TextureTiles
           : firstPlane == 0          ? this->Cache->PlaneTiles
                                      : this->Cache->SeamTiles;
@@ -1522,12 +1546,16 @@ int vtkPolyDataSubbandNoise::RequestData(
 
       const vtkIdType points = block.Mesh->GetNumberOfPoints();
       Evaluator evaluator{ lookups, wavelength, anisotropy, this->Octaves, this->Persistence,
-        this->Function == TURBULENCE, this->AntiAlias, pyramid.Seed };
+        this->Function == TURBULENCE, this->AntiAlias && !this->WeightsOnly, pyramid.Seed };
       evaluator.Seams = textured && blendSeams ? &seams : nullptr;
       evaluator.WholeImage = wholeImage;
       evaluator.Limited = !wholeImage && !(ofImage && !ownWeights.empty());
-      auto result = noise::NewOutputArray(this->ResultArrayName, 1, points);
-      evaluator.Noise = result->GetPointer(0);
+      vtkSmartPointer<vtkFloatArray> result;
+      if (!this->WeightsOnly)
+      {
+        result = noise::NewOutputArray(this->ResultArrayName, 1, points);
+        evaluator.Noise = result->GetPointer(0);
+      }
       evaluator.WavelengthArray = block.Wavelengths;
       evaluator.AnisotropyArray = block.Anisotropies;
       evaluator.Scale = anisotropyScale;
@@ -1568,7 +1596,7 @@ int vtkPolyDataSubbandNoise::RequestData(
             std::to_string(needed) + " components, one for each octave and orientation.");
         }
       }
-      if (this->OutputWeights)
+      if (this->OutputWeights || this->WeightsOnly)
       {
         auto array = noise::NewOutputArray(
           "SubbandWeights", evaluator.GetFirstComponent(lookups.size()), points);
@@ -1635,8 +1663,11 @@ int vtkPolyDataSubbandNoise::RequestData(
       }
       known.ArePointsKnown = this->KeepFields && !this->GetAbortOutput();
       counts += known.Counts;
-      pointData->AddArray(result);
-      pointData->SetActiveScalars(this->ResultArrayName);
+      if (result)
+      {
+        pointData->AddArray(result);
+        pointData->SetActiveScalars(this->ResultArrayName);
+      }
       block.Surface.reset();
     }
   }
@@ -1713,7 +1744,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   // Octaves that are too fine fade with AntiAlias.
   const double thinnest = wavelengths.Shortest / std::sqrt(wanted) /
     (this->AntiAlias ? 1.0 : std::ldexp(1.0, this->Octaves - 1));
-  if (!blocks.empty() && !(ofImage && this->Method == NONE) && spacing > 0.0 &&
+  if (!blocks.empty() && !this->WeightsOnly && !(ofImage && this->Method == NONE) && spacing > 0.0 &&
     thinnest < 0.999 * PointsPerWavelength * spacing)
   {
     message << "\nThe points are " << spacing << " apart: " << thinnest / spacing
@@ -1753,6 +1784,7 @@ void vtkPolyDataSubbandNoise::PrintSelf(ostream& os, vtkIndent indent)
      << "\n";
   os << indent << "KeepFields: " << this->KeepFields << "\n";
   os << indent << "OutputWeights: " << this->OutputWeights << "\n";
+  os << indent << "WeightsOnly: " << this->WeightsOnly << "\n";
   os << indent << "OutputDistortion: " << this->OutputDistortion << "\n";
   os << indent << "Controller: " << this->Controller << "\n";
 }

@@ -253,6 +253,26 @@ public:
 
   ///@{
   /**
+   * For renderers, which look tiles up themselves: the array SubbandWeights is made and no noise. Points are then no
+   * samples, so their spacing does not count, neither for the automatic Wavelength nor in warnings, and AntiAlias fades
+   * nothing. Weights do not depend on Seed, Phase, Octaves, Persistence and Function. Default off.
+   */
+  vtkSetMacro(WeightsOnly, bool);
+  vtkGetMacro(WeightsOnly, bool);
+  vtkBooleanMacro(WeightsOnly, bool);
+  ///@}
+
+  ///@{
+  /**
+   * How often a tile repeats in one repeat of the texture coordinates, and in a world unit of planar projections; of
+   * the last execution.
+   */
+  vtkGetMacro(TextureRepeats, double);
+  vtkGetMacro(PlaneRepeats, double);
+  ///@}
+
+  ///@{
+  /**
    * Adds the stretch of the texture as the float array "Distortion": ratio of the singular values of
    * the mapping, 1 or more; of the steepest-facing projection in triplanar noise; 0 where there is no
    * mapping. Default off.
@@ -312,6 +332,9 @@ protected:
   char* ResultArrayName = nullptr;
   bool OutputWeights = false;
   bool OutputDistortion = false;
+  bool WeightsOnly = false;
+  double TextureRepeats = 1.0;
+  double PlaneRepeats = 1.0;
   bool KeepFields = true;
   vtkMultiProcessController* Controller = nullptr;
 

@@ -1998,6 +1998,42 @@ TEST(PolyDataSubbandNoise, WeightsAndDistortion)
   }
 }
 
+TEST(PolyDataSubbandNoise, WeightsOnlyIsForThoseWhoLookTilesUp)
+{
+  for (const bool texture : { true, false })
+  {
+    // Points are farther apart than a wavelength, which is nothing to warn about here.
+    const auto sheet = Sheet(9, Flat, CellKind::Triangles, 1.0, texture);
+    std::string warnings;
+    const auto both = AddNoise(sheet, 0.1,
+      [](vtkPolyDataSubbandNoise* filter)
+      {
+        filter->OutputWeightsOn();
+        filter->AntiAliasOff();
+      },
+      &warnings);
+    vtkNew<vtkPolyDataSubbandNoise> filter;
+    auto messages = Listen(filter);
+    filter->SetInputData(sheet);
+    filter->SetWavelength(0.1);
+    filter->WeightsOnlyOn();
+    filter->Update();
+    auto* alone = vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
+    EXPECT_EQ(messages->Text, "");
+    EXPECT_EQ(alone->GetPointData()->GetArray("SubbandNoise"), nullptr);
+    EXPECT_EQ(alone->GetPointData()->GetScalars(), nullptr);
+    EXPECT_EQ(Values(alone, "SubbandWeights"), Values(both, "SubbandWeights"));
+    // A wavelength of the noise lies within the scales of the tiles, which are 32 cycles and coarser.
+    const double repeats = texture ? filter->GetTextureRepeats() : filter->GetPlaneRepeats();
+    EXPECT_GT(repeats * 32.0 * 0.1, 1.0);
+    EXPECT_LT(repeats * 32.0 * 0.1, 16.0);
+
+    filter->SetWavelength(0.0);
+    filter->Update();
+    EXPECT_LT(filter->GetResolvedWavelength(), 0.04); // 1/50 of the diagonal, whatever the points
+  }
+}
+
 TEST(PolyDataSubbandNoise, TriplanarNeedsNoTexture)
 {
   vtkNew<vtkSphereSource> sphere;

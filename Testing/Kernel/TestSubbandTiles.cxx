@@ -262,6 +262,37 @@ TEST(SubbandTiles, SizeOnlyChangesTheSampling)
   }
 }
 
+TEST(SubbandTiles, AScaleHasItsValuesWithAnyNumberOfTexels)
+{
+  SubbandParameters p = Pyramid(4, 3, 64, 0.125);
+  p.Realization = 2;
+  const SubbandTiles tiles = MakeSubbandTiles(p);
+  for (int j = 0; j < p.Scales; ++j)
+  {
+    for (const int size : { 32, 64, 128 })
+    {
+      const std::vector<float> scale = MakeScaleTiles(p, j, size);
+      ASSERT_EQ(scale.size(), static_cast<std::size_t>(4 * size * size));
+      const int step = size > 64 ? size / 64 : 1;
+      const int other = size < 64 ? 64 / size : 1;
+      for (int y = 0; y < 32; ++y)
+      {
+        for (int x = 0; x < 32; ++x)
+        {
+          for (int i = 0; i < 4; ++i)
+          {
+            EXPECT_NEAR(scale[4 * (step * y * size + step * x) + i],
+              tiles.Texel(other * x, other * y)[4 * j + i], 1e-6);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_THROW(MakeScaleTiles(p, 0, 16), std::invalid_argument);
+  EXPECT_THROW(MakeScaleTiles(p, 3, 64), std::invalid_argument);
+  EXPECT_THROW(MakeScaleTiles(p, -1, 64), std::invalid_argument);
+}
+
 TEST(SubbandTiles, FourBandsInEightBits)
 {
   const SubbandTiles tiles = MakeSubbandTiles(Pyramid(4, 1));

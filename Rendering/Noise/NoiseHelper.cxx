@@ -69,7 +69,7 @@ void vtkNoiseHelper::SetShaderValues(
 void vtkNoiseHelper::RenderPieceStart(vtkRenderer* renderer, vtkActor* actor)
 {
   this->Superclass::RenderPieceStart(renderer, actor);
-  this->ActivateTextures();
+  this->ActivateTextures(static_cast<vtkOpenGLRenderWindow*>(renderer->GetRenderWindow()));
 }
 
 void vtkNoiseHelper::RenderPieceDraw(vtkRenderer* renderer, vtkActor* actor)

@@ -65,7 +65,7 @@ protected:
   virtual void AppendVertices(vtkPolyData* data, vtkIdType count, vtkActor* actor) = 0;
   virtual void EndVertices(vtkOpenGLRenderWindow*) {}
   /// Around the drawing of all blocks.
-  virtual void ActivateTextures() {}
+  virtual void ActivateTextures(vtkOpenGLRenderWindow*) {}
   virtual void DeactivateTextures() {}
   ///@}
 

@@ -191,7 +191,7 @@ protected:
     }
   }
 
-  void ActivateTextures() override
+  void ActivateTextures(vtkOpenGLRenderWindow*) override
   {
     if (this->CellTexture && this->GetInternals().Variant.PerCell)
     {

@@ -31,7 +31,7 @@ public:
   /// Of the variant's kind: 4 components a texel.
   const std::vector<std::uint8_t>& GetBytes() const { return this->Bytes; }
   const std::vector<float>& GetFloats() const { return this->Floats; }
-  /// noiseTile of each layer, 4 values.
+  /// Where the tile of each layer is, as TileAt of the shader wants it: 4 values. It depends on the variant alone.
   const std::vector<float>& GetTiles() const { return this->Tiles; }
 
   /// Bytes of a band of this scale reach to plus and minus this, four standard deviations.

@@ -4,21 +4,19 @@
 // Subband noise of a fragment (Goldberg, Zwicker, Durand 2008, sections 4 and 5): the sum of bands, looked up in tiles at
 // texture coordinates, times the weights of the vertices, times what the footprint of the pixel lets through.
 //
-// A layer is four bands of neighbouring directions at one scale. Tiles lie in one texture; noiseTile says where. The mapper
-// defines before this text: NOISE_LAYERS, NOISE_OCTAVES and, as its options ask, NOISE_BYTES (tiles hold 0 to 1, 0.5
-// is 0), NOISE_CUBIC (16 texels with Catmull-Rom weights, as the filter has it; else bilinear), NOISE_FADES. After it
-// come the functions that add up the layers of each kind of tiles.
+// A layer is four bands of neighbouring directions at one scale. Tiles lie in one texture. The mapper defines before this
+// text as its options ask NOISE_BYTES (tiles hold 0 to 1, 0.5 is 0) and NOISE_CUBIC (16 texels with Catmull-Rom weights, as
+// the filter has it; else bilinear). After it come the functions that add up the layers of each set of tiles.
 //
 // A layer costs one bilinear lookup (16 texels with NOISE_CUBIC), antialiasing two exponentials of four values for each
 // set of tiles and 15 operations a layer.
 
 uniform sampler2D noiseTiles;
-uniform vec4 noiseTile[NOISE_LAYERS]; // of texel (0, 0): where, and the size of the tile; in texels with NOISE_CUBIC
 
-/// The four bands of a layer at a place in the tile, in [0, 1).
-vec4 TileAt(int layer, vec2 place)
+/// The four bands of a layer at a place in the tile, in [0, 1). `tile`: where texel (0, 0) is in the texture, and the
+/// size of the tile; in texels with NOISE_CUBIC, in textures without.
+vec4 TileAt(vec4 tile, vec2 place)
 {
-  vec4 tile = noiseTile[layer];
 #ifdef NOISE_CUBIC
   ivec2 size = ivec2(tile.zw);
   vec2 texel = place * tile.zw;
@@ -38,7 +36,7 @@ vec4 TileAt(int layer, vec2 place)
     bands += w[y].y * row;
   }
 #else
-  vec4 bands = textureLod(noiseTiles, tile.xy + place * tile.zw, 0.0);
+  vec4 bands = texture(noiseTiles, tile.xy + place * tile.zw);
 #endif
 #ifdef NOISE_BYTES
   bands -= 0.5;

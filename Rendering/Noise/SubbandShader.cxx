@@ -26,12 +26,15 @@ std::string VecOf(const std::array<double, 4>& values)
   return os.str();
 }
 
-/// A function that sums the layers of one set of tiles at `place`, with their weights as arguments.
-std::string DefineSum(const char* name, const SubbandVariant& variant, int scales)
+/**
+ * A function that sums the layers of one set of tiles at `place`, with their weights as arguments. Where tiles are is
+ * written into it: software OpenGL (llvmpipe) reads an array of uniforms for each fragment by itself.
+ */
+std::string DefineSum(const std::string& name, const SubbandVariant& variant, int scales, const float* tiles)
 {
   const int groups = variant.Groups();
   std::ostringstream os;
-  os << std::scientific << "float " << name << "(int first, vec2 place, vec3 footprint";
+  os << std::scientific << "float " << name << "(vec2 place, vec3 footprint";
   for (int layer = 0; layer < groups * scales; ++layer)
   {
     os << ", vec4 w" << layer;
@@ -68,7 +71,8 @@ std::string DefineSum(const char* name, const SubbandVariant& variant, int scale
       {
         os << " * FadeOf(t" << g << ")";
       }
-      os << ", TileAt(first + " << layer << ", place));\n";
+      const float* tile = tiles + 4 * layer;
+      os << ", TileAt(" << VecOf({ tile[0], tile[1], tile[2], tile[3] }) << ", place));\n";
       if (variant.Fades && scale > 0)
       {
         os << "  t" << g << " *= t" << g << ";\n  t" << g << " *= t" << g << ";\n";
@@ -82,9 +86,8 @@ std::string DefineSum(const char* name, const SubbandVariant& variant, int scale
 std::string GetDefines(const SubbandVariant& variant)
 {
   std::ostringstream os;
-  os << "#define NOISE_LAYERS " << variant.Layers() << "\n#define NOISE_OCTAVES " << variant.Octaves << "\n"
-     << (variant.Bytes ? "#define NOISE_BYTES\n" : "") << (variant.Cubic ? "#define NOISE_CUBIC\n" : "")
-     << (variant.Fades ? "#define NOISE_FADES\n" : "");
+  os << "#define NOISE_OCTAVES " << variant.Octaves << "\n" << (variant.Bytes ? "#define NOISE_BYTES\n" : "")
+     << (variant.Cubic ? "#define NOISE_CUBIC\n" : "");
   return os.str();
 }
 
@@ -118,19 +121,18 @@ std::vector<std::string> GetWeights(const SubbandVariant& variant, int first, in
   return weights;
 }
 
-/// What a fragment does.
-std::string GetFragmentNoise(const SubbandVariant& variant)
+/// Tiles that are looked up at one place.
+struct TileSet
 {
-  std::ostringstream os;
-  os << "  bool noiseSteered = noiseTextureVSOutput.z > 0.0;\n  float noiseValue = 0.0;\n";
-  struct Set
-  {
-    const char* Sum;
-    int First;
-    int Scales;
-    std::string Place;
-  };
-  std::vector<Set> sets;
+  std::string Sum; ///< Name of the function.
+  int FirstScale;
+  int Scales;
+  std::string Place;
+};
+
+std::vector<TileSet> GetSets(const SubbandVariant& variant)
+{
+  std::vector<TileSet> sets;
   if (variant.TextureScales > 0)
   {
     sets.push_back({ "SumTexture", 0, variant.TextureScales, "noiseTextureVSOutput.xy" });
@@ -138,43 +140,34 @@ std::string GetFragmentNoise(const SubbandVariant& variant)
   const char* const planes[3] = { "yz", "xz", "xy" };
   for (int axis = 0; axis < 3 && variant.PlaneScales > 0; ++axis)
   {
-    sets.push_back({ "SumPlane", variant.TextureScales + axis * variant.PlaneScales, variant.PlaneScales,
-      std::string("noisePlaceVSOutput.") + planes[axis] });
+    sets.push_back({ std::string("SumPlane") + "XYZ"[axis], variant.TextureScales + axis * variant.PlaneScales,
+      variant.PlaneScales, std::string("noisePlaceVSOutput.") + planes[axis] });
   }
+  return sets;
+}
+
+/// What a fragment does.
+std::string GetFragmentNoise(const SubbandVariant& variant)
+{
+  std::ostringstream os;
+  os << "  bool noiseSteered = noiseTextureVSOutput.z > 0.0;\n  float noiseValue = 0.0;\n";
+  const std::vector<TileSet> sets = GetSets(variant);
   for (std::size_t s = 0; s < sets.size(); ++s)
   {
-    const Set& set = sets[s];
-    os << "  vec2 noisePlace" << s << " = " << set.Place << ";\n  vec3 noiseFootprint" << s
+    os << "  vec2 noisePlace" << s << " = " << sets[s].Place << ";\n  vec3 noiseFootprint" << s
        << " = FootprintOf(dFdx(noisePlace" << s << "), dFdy(noisePlace" << s << "));\n";
-    if (sets.size() == 1)
-    {
-      os << "  const int noiseCounts0 = 1;\n";
-      continue;
-    }
-    // Most fragments need one of the planes or two. Loops end where no fragment of a group goes on; a branch would
-    // cost all of them everything.
-    os << "  int noiseCounts" << s << " = dot(";
-    std::string plus;
-    for (const std::string& weights : GetWeights(variant, set.First, set.Scales))
-    {
-      os << plus << "abs(" << weights << ")";
-      plus = " + ";
-    }
-    os << ", vec4(1.0)) > 0.0 ? 1 : 0;\n";
   }
   os << "  float noiseAmplitude = 1.0;\n  float noiseScale = 1.0;\n"
         "  for (int octave = 0; octave < NOISE_OCTAVES; ++octave)\n  {\n    float octaveNoise = 0.0;\n";
   for (std::size_t s = 0; s < sets.size(); ++s)
   {
-    const Set& set = sets[s];
-    os << "    for (int n = 0; n < noiseCounts" << s << "; ++n)\n    {\n      octaveNoise += " << set.Sum << "("
-       << variant.Groups() * set.First << ", noiseScale * noisePlace" << s
+    os << "    octaveNoise += " << sets[s].Sum << "(noiseScale * noisePlace" << s
        << " + noiseShift[octave], noiseScale * noiseScale * noiseFootprint" << s;
-    for (const std::string& weights : GetWeights(variant, set.First, set.Scales))
+    for (const std::string& weights : GetWeights(variant, sets[s].FirstScale, sets[s].Scales))
     {
       os << ", " << weights;
     }
-    os << ");\n    }\n";
+    os << ");\n";
   }
   os << "    noiseValue += noiseAmplitude * " << (variant.Turbulence ? "abs(octaveNoise)" : "octaveNoise")
      << ";\n    noiseAmplitude *= noisePersistence;\n    noiseScale *= 2.0;\n  }\n";
@@ -183,7 +176,7 @@ std::string GetFragmentNoise(const SubbandVariant& variant)
 } // namespace
 
 void AddSubbandNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const SubbandVariant& variant,
-  const ColorOptions& color)
+  const std::vector<float>& tiles, const ColorOptions& color)
 {
   std::vector<Varying> varyings;
   std::ostringstream vertex;
@@ -208,28 +201,20 @@ void AddSubbandNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const Subba
   std::string declarations = GetDefines(variant);
   declarations += "uniform vec2 noiseShift[NOISE_OCTAVES];\nuniform float noisePersistence;\n";
   declarations += SubbandNoiseGlsl;
-  if (variant.TextureScales > 0)
+  for (const TileSet& set : GetSets(variant))
   {
-    declarations += DefineSum("SumTexture", variant, variant.TextureScales);
-  }
-  if (variant.PlaneScales > 0)
-  {
-    declarations += DefineSum("SumPlane", variant, variant.PlaneScales);
+    declarations +=
+      DefineSum(set.Sum, variant, set.Scales, tiles.data() + 4 * variant.Groups() * set.FirstScale);
   }
   AddColor(shaders[vtkShader::Fragment], color, declarations, GetFragmentNoise(variant));
 }
 
 void SetSubbandUniforms(vtkShaderProgram* program, const SubbandVariant& variant,
-  const std::vector<float>& tiles, double persistence, std::uint32_t seed)
+  double persistence, std::uint32_t seed)
 {
   if (program->IsUniformUsed("noisePersistence"))
   {
     program->SetUniformf("noisePersistence", static_cast<float>(persistence));
-  }
-  if (program->IsUniformUsed("noiseTile"))
-  {
-    program->SetUniform4fv("noiseTile", static_cast<int>(tiles.size() / 4),
-      reinterpret_cast<const float(*)[4]>(tiles.data()));
   }
   if (program->IsUniformUsed("noiseShift"))
   {

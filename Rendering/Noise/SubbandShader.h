@@ -60,13 +60,12 @@ constexpr int MostLineLength(int components)
   return components / 4 - 4; // VTK: places, normals, colours, texture coordinates
 }
 
-/// Adds the noise to the templates of a polydata mapper, before it fills them.
+/// Adds the noise to the templates of a polydata mapper, before it fills them. `tiles`: of SubbandAtlas.
 void AddSubbandNoise(std::map<vtkShader::Type, vtkShader*>& shaders, const SubbandVariant& variant,
-  const ColorOptions& color);
+  const std::vector<float>& tiles, const ColorOptions& color);
 
-/// `tiles`: noiseTile of each layer.
-void SetSubbandUniforms(vtkShaderProgram* program, const SubbandVariant& variant,
-  const std::vector<float>& tiles, double persistence, std::uint32_t seed);
+void SetSubbandUniforms(vtkShaderProgram* program, const SubbandVariant& variant, double persistence,
+  std::uint32_t seed);
 } // namespace noise
 
 #endif

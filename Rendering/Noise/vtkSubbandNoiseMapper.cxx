@@ -290,14 +290,15 @@ protected:
 
   void AddNoise(std::map<vtkShader::Type, vtkShader*>& shaders) override
   {
-    noise::AddSubbandNoise(shaders, this->GetInternals().Variant, this->GetDrawn().Color);
+    const auto& internals = this->GetInternals();
+    noise::AddSubbandNoise(shaders, internals.Variant, internals.Atlas.GetTiles(), this->GetDrawn().Color);
   }
 
   void SetNoiseUniforms(vtkShaderProgram* program, vtkRenderer*, vtkActor*, const std::array<double, 3>&,
     const std::array<double, 3>&) override
   {
     const auto& internals = this->GetInternals();
-    noise::SetSubbandUniforms(program, internals.Variant, internals.Atlas.GetTiles(), internals.Persistence,
+    noise::SetSubbandUniforms(program, internals.Variant, internals.Persistence,
       static_cast<std::uint32_t>(internals.Seed));
     if (program->IsUniformUsed("noiseVertices"))
     {

@@ -36,7 +36,7 @@ vec4 TileAt(vec4 tile, vec2 place)
     bands += w[y].y * row;
   }
 #else
-  vec4 bands = texture(noiseTiles, tile.xy + place * tile.zw);
+  vec4 bands = textureLod(noiseTiles, tile.xy + place * tile.zw, 0.0);
 #endif
 #ifdef NOISE_BYTES
   bands -= 0.5;
@@ -50,12 +50,8 @@ vec3 FootprintOf(vec2 dx, vec2 dy)
   return vec3(dx.x * dx.x + dy.x * dy.x, dx.x * dx.y + dy.x * dy.y, dx.y * dx.y + dy.y * dy.y);
 }
 
-/**
- * What a Gaussian pixel of deviation 1 leaves of bands with exp(-q / 4) = t, where exp(-q / 2) is left at their centre:
- * from three radii half an octave apart, each with the area that it stands for.
- */
+/// What a Gaussian pixel with a deviation of 1 leaves at the centre of bands, where exp(-q / 4) = t.
 vec4 FadeOf(vec4 t)
 {
-  vec4 squared = t * t;
-  return 0.111111 * t + 0.444444 * (squared + squared * squared);
+  return t * t;
 }

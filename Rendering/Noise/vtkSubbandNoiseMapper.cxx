@@ -347,6 +347,9 @@ protected:
         internals.Variant.Cubic ? vtkTextureObject::Nearest : vtkTextureObject::Linear;
       this->Tiles->SetMinificationFilter(filter);
       this->Tiles->SetMagnificationFilter(filter);
+      // Tiles have borders; repeating costs more.
+      this->Tiles->SetWrapS(vtkTextureObject::ClampToEdge);
+      this->Tiles->SetWrapT(vtkTextureObject::ClampToEdge);
       const bool bytes = internals.Variant.Bytes;
       this->Tiles->ResetFormatAndType();
       this->Tiles->Create2DFromRaw(static_cast<unsigned int>(atlas.GetWidth()),

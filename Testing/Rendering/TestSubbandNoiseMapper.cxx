@@ -197,3 +197,185 @@ TEST(SubbandNoiseMapper, BytesAndBilinearLookupsAreClose)
     }
   }
 }
+
+TEST(SubbandNoiseMapper, WhatIsDrawnUploadsNoVertices)
+{
+  const auto sheet = MakeSheet(true);
+  Scene scene(sheet);
+  scene.LookDown(110.0, 110.0, 256.0);
+  scene.Render();
+  const vtkMTimeType before = scene.Mapper->GetUploadTime();
+  EXPECT_GT(before, 0u);
+  auto last = scene.RenderNoise();
+  const std::pair<const char*, std::function<void(vtkSubbandNoiseMapper*)>> changes[] = {
+    { "Phase", [](vtkSubbandNoiseMapper* m) { m->SetPhase(0.3); } },
+    { "Time", [](vtkSubbandNoiseMapper* m)
+      {
+        m->SetTimePeriod(2.0);
+        m->SetTime(0.7);
+      } },
+    { "Octaves", [](vtkSubbandNoiseMapper* m) { m->SetOctaves(2); } },
+    { "Persistence", [](vtkSubbandNoiseMapper* m) { m->SetPersistence(0.2); } },
+    { "Function", [](vtkSubbandNoiseMapper* m) { m->SetFunction(vtkPolyDataSubbandNoise::TURBULENCE); } },
+    { "Seed", [](vtkSubbandNoiseMapper* m) { m->SetSeed(3); } },
+    { "AntiAlias", [](vtkSubbandNoiseMapper* m) { m->AntiAliasOff(); } },
+  };
+  for (const auto& change : changes)
+  {
+    change.second(scene.Mapper);
+    const auto now = scene.RenderNoise();
+    EXPECT_EQ(scene.Mapper->GetUploadTime(), before) << change.first;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < now.size(); ++i)
+    {
+      largest = std::isnan(now[i]) ? largest : std::max(largest, std::abs(now[i] - last[i]));
+    }
+    EXPECT_GT(largest, 0.1) << change.first;
+    last = now;
+  }
+  scene.Mapper->SetWavelength(40.0);
+  scene.Render();
+  EXPECT_GT(scene.Mapper->GetUploadTime(), before);
+}
+
+TEST(SubbandNoiseMapper, BytesOfThePaper)
+{
+  const auto sheet = MakeSheet(true);
+  Scene scene(sheet);
+  scene.Mapper->SetInterpolation(vtkSubbandNoiseMapper::CUBIC);
+  scene.Mapper->SetOrientations(4);
+  scene.Render();
+  // Four directions of 256 x 256 texels are 262144 bytes at each scale.
+  EXPECT_GT(scene.Mapper->GetTileBytes(), 0);
+  EXPECT_EQ(scene.Mapper->GetTileBytes() % 262144, 0);
+  EXPECT_LE(scene.Mapper->GetTileBytes(), 6 * 262144);
+  scene.Mapper->SetInterpolation(vtkSubbandNoiseMapper::LINEAR);
+  scene.Render();
+  EXPECT_LE(scene.Mapper->GetTileBytes(), 1.6 * 4 * 262144);
+  EXPECT_EQ(scene.Mapper->GetWeightBytes() % (16 * sheet->GetNumberOfPoints()), 0);
+}
+
+TEST(SubbandNoiseMapper, BandsFadeByTheFootprintOfThePixel)
+{
+  const auto sheet = MakeSheet(true, { 0.0, 0.0, 0.0 });
+  Scene scene(sheet);
+  const auto deviation = [&](double wavelength, double unitsHigh, bool fades)
+  {
+    scene.Mapper->SetWavelength(wavelength);
+    scene.Mapper->SetAntiAlias(fades);
+    scene.LookDown(110.0, 110.0, unitsHigh);
+    double sum = 0.0;
+    double squares = 0.0;
+    int count = 0;
+    for (const double value : scene.RenderNoise())
+    {
+      if (!std::isnan(value))
+      {
+        sum += value;
+        squares += value * value;
+        ++count;
+      }
+    }
+    return std::sqrt(squares / count - sum * sum / (count * static_cast<double>(count)));
+  };
+  EXPECT_NEAR(deviation(20.0, 200.0, true), 1.0, 0.2);
+  EXPECT_NEAR(deviation(20.0, 2560.0, false), 1.0, 0.2); // two pixels to a wavelength
+  EXPECT_LT(deviation(20.0, 2560.0, true), 0.1);
+}
+
+TEST(SubbandNoiseMapper, BlocksOfAllKinds)
+{
+  const auto textured = MakeSheet(true);
+  const auto plain = MakeSheet(false, { 3.0, 300.0, 2.0 });
+  // The points of the first one, with other cells.
+  vtkNew<vtkPolyData> shared;
+  shared->ShallowCopy(textured);
+  shared->GetPointData()->SetTCoords(nullptr);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, textured);
+  blocks->SetBlock(1, plain);
+  blocks->SetBlock(2, shared);
+  blocks->SetBlock(3, vtkNew<vtkPolyData>());
+  Messages messages;
+  Scene scene(blocks);
+  scene.Mapper->SetWavelength(30.0);
+  scene.Actor->GetProperty()->EdgeVisibilityOn(); // has a geometry shader
+  scene.LookDown(110.0, 260.0, 600.0);
+  int count = 0;
+  for (const double value : scene.RenderNoise())
+  {
+    count += std::abs(value) > 0.2;
+  }
+  EXPECT_GT(count, 10000);
+  EXPECT_EQ(messages.Get(), "");
+}
+
+TEST(SubbandNoiseMapper, BadInputIsToldOnceAndShowsItsOwnColours)
+{
+  const auto sheet = MakeSheet(false);
+  Messages messages;
+  Scene scene(sheet);
+  scene.LookDown(110.0, 110.0, 256.0);
+  scene.Mapper->SetParameterization(vtkPolyDataSubbandNoise::TEXTURE_COORDINATES);
+  scene.Mapper->SetNoiseContrast(5.0);
+  const auto own = scene.Render();
+  scene.Render();
+  const std::string text = messages.Get();
+  EXPECT_NE(text.find("There are no texture coordinates"), std::string::npos) << text;
+  EXPECT_NE(text.find("shows its own colours"), std::string::npos) << text;
+  EXPECT_EQ(text.find("There are no", text.find("There are no") + 1), std::string::npos) << text;
+  scene.Mapper->SetParameterization(vtkPolyDataSubbandNoise::AUTOMATIC);
+  EXPECT_NE(scene.Render(), own);
+  scene.Mapper->SetNoiseIntensity(0.0);
+  EXPECT_EQ(scene.Render(), own);
+  EXPECT_EQ(messages.Get(), text);
+
+  // Points that are not finite, and cells without area.
+  sheet->GetPoints()->SetPoint(7, std::nan(""), 0.0, 0.0);
+  sheet->GetPoints()->SetPoint(8, 3.0, 1.0, 0.0);
+  sheet->GetPoints()->Modified();
+  sheet->Modified();
+  scene.Mapper->SetNoiseIntensity(1.0);
+  scene.Render();
+  vtkNew<vtkPolyData> empty;
+  scene.Mapper->SetInputDataObject(empty);
+  scene.Render();
+}
+
+TEST(SubbandNoiseMapper, ColourModesAreThoseOfAllMappers)
+{
+  const auto sheet = MakeSheet(false);
+  Scene scene(sheet);
+  scene.LookDown(110.0, 110.0, 256.0);
+  scene.Actor->GetProperty()->SetColor(0.7, 0.3, 0.2);
+  std::vector<std::vector<unsigned char>> pictures;
+  for (int mode = vtkSurfaceNoiseMapper::MULTIPLY; mode <= vtkSurfaceNoiseMapper::OPACITY; ++mode)
+  {
+    scene.Mapper->SetNoiseColorMode(mode);
+    EXPECT_EQ(scene.Mapper->HasTranslucentPolygonalGeometry(), mode == vtkSurfaceNoiseMapper::OPACITY);
+    pictures.push_back(scene.Render());
+    for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+    {
+      EXPECT_NE(pictures[i], pictures.back());
+    }
+  }
+}
+
+TEST(SubbandNoiseMapper, CopiesHaveAllOptions)
+{
+  vtkNew<vtkSubbandNoiseMapper> mapper;
+  mapper->SetWavelength(3.0);
+  mapper->SetOrientations(4);
+  mapper->SetPhase(0.25);
+  mapper->SetOctaves(3);
+  mapper->SetInterpolation(vtkSubbandNoiseMapper::CUBIC);
+  mapper->SetNoiseContrast(2.0);
+  vtkNew<vtkSubbandNoiseMapper> copy;
+  copy->ShallowCopy(mapper);
+  EXPECT_EQ(copy->GetWavelength(), 3.0);
+  EXPECT_EQ(copy->GetOrientations(), 4);
+  EXPECT_EQ(copy->GetPhase(), 0.25);
+  EXPECT_EQ(copy->GetOctaves(), 3);
+  EXPECT_EQ(copy->GetInterpolation(), vtkSubbandNoiseMapper::CUBIC);
+  EXPECT_EQ(copy->GetNoiseContrast(), 2.0);
+}

@@ -466,8 +466,21 @@ struct KeptSurface
 };
 } // namespace
 
+/// What all blocks of all ranks agree on.
+struct vtkPolyDataSubbandNoise::Agreement
+{
+  noise::CommonBounds Bounds;
+  SurfaceSums Sums;
+  std::array<double, 3> Lengths;
+  std::array<double, 3> Charts;
+  noise::SubbandSeams Seams;
+};
+
 struct vtkPolyDataSubbandNoise::Internals
 {
+  std::shared_ptr<const Agreement> Given; // by another filter; null: the ranks agree themselves
+  std::shared_ptr<const Agreement> Last;
+
   /// By the texture coordinates, which are only compared, and WrapSeams.
   noise::KeptByInput<KeptSurface, std::pair<const vtkDataArray*, bool>> Kept;
   TileCache TextureTiles;
@@ -1114,6 +1127,17 @@ void vtkPolyDataSubbandNoise::SetPhase(double phase)
 }
 
 //------------------------------------------------------------------------------
+void vtkPolyDataSubbandNoise::TakeAgreement(vtkPolyDataSubbandNoise* other)
+{
+  const std::shared_ptr<const Agreement> given = other ? other->Cache->Last : nullptr;
+  if (this->Cache->Given != given)
+  {
+    this->Cache->Given = given;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkPolyDataSubbandNoise::SetSubbandsConnection(vtkAlgorithmOutput* bands)
 {
   this->SetInputConnection(1, bands);
@@ -1281,7 +1305,21 @@ int vtkPolyDataSubbandNoise::RequestData(
     }
     bounds.Add(*known);
   }
-  bounds.Reduce(this->Controller);
+  const std::shared_ptr<const Agreement> given = this->Cache->Given;
+  auto agreed = std::make_shared<Agreement>();
+  const auto agree = [&](auto& value, auto Agreement::*member, const auto& reduce)
+  {
+    if (given)
+    {
+      value = (*given).*member;
+    }
+    else
+    {
+      reduce();
+    }
+    (*agreed).*member = value;
+  };
+  agree(bounds, &Agreement::Bounds, [&] { bounds.Reduce(this->Controller); });
   const double diagonal = bounds.GetDiagonal();
   const auto getSurface = [&](Block& block) -> SubbandSurface&
   {
@@ -1309,7 +1347,8 @@ int vtkPolyDataSubbandNoise::RequestData(
       }
     });
   const SurfaceSums local = sums;
-  Reduce(this->Controller, sums.Values.data(), sums.Values.size(), vtkCommunicator::SUM_OP);
+  agree(sums, &Agreement::Sums,
+    [&] { Reduce(this->Controller, sums.Values.data(), sums.Values.size(), vtkCommunicator::SUM_OP); });
 
   const bool nothing =
     sums[SurfaceSums::TexturedBlocks] + sums[SurfaceSums::ProjectedBlocks] == 0.0;
@@ -1331,7 +1370,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   const std::string wavelengthName = nameOf(WAVELENGTH_ARRAY);
   const std::string anisotropyName =
     finder.IsSteered() ? nameOf(ANISOTROPY_ARRAY) : std::string();
-  double lengths[3] = { std::numeric_limits<double>::infinity(), // least, -greatest, -anisotropy
+  std::array<double, 3> lengths = { std::numeric_limits<double>::infinity(), // least, -greatest, -anisotropy
     std::numeric_limits<double>::infinity(), -1.0 };
   for (Block& block : blocks)
   {
@@ -1370,7 +1409,8 @@ int vtkPolyDataSubbandNoise::RequestData(
       lengths[2] = std::min(lengths[2], -AnisotropyAt(block.Anisotropies, i, 1.0));
     }
   }
-  Reduce(this->Controller, lengths, 3, vtkCommunicator::MIN_OP);
+  agree(lengths, &Agreement::Lengths,
+    [&] { Reduce(this->Controller, lengths.data(), 3, vtkCommunicator::MIN_OP); });
   if (!anisotropyName.empty())
   {
     wanted = asked = -lengths[2];
@@ -1409,7 +1449,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   }
 
   // Charts smaller than a wavelength leave no noise but seams.
-  double charts[3] = { 0.0, 0.0, 0.0 }; // their area, that of all, and their number
+  std::array<double, 3> charts = { 0.0, 0.0, 0.0 }; // their area, that of all, and their number
   attempt(
     [&]
     {
@@ -1430,7 +1470,8 @@ int vtkPolyDataSubbandNoise::RequestData(
         }
       }
     });
-  Reduce(this->Controller, charts, 3, vtkCommunicator::SUM_OP);
+  agree(charts, &Agreement::Charts,
+    [&] { Reduce(this->Controller, charts.data(), 3, vtkCommunicator::SUM_OP); });
   const bool shattered = charts[0] > 0.5 * charts[1];
   noise::SubbandSeams seams;
   if (blendSeams)
@@ -1452,9 +1493,14 @@ int vtkPolyDataSubbandNoise::RequestData(
           }
         }
       });
-    seams.Gather(this->Controller);
-    seams.Build();
+    agree(seams, &Agreement::Seams,
+      [&]
+      {
+        seams.Gather(this->Controller);
+        seams.Build();
+      });
   }
+  this->Cache->Last = std::move(agreed);
   if (!failure.empty())
   {
     return refuse(failure);

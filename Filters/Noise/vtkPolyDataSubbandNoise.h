@@ -303,6 +303,12 @@ public:
   vtkGetObjectMacro(Controller, vtkMultiProcessController);
   ///@}
 
+  /**
+   * Takes what `other` and the ranks of its Controller agreed on when it last executed, in place of agreeing: for a part
+   * of its surfaces that lies elsewhere now, where ranks do not meet. Null: all ranks of the Controller take part again.
+   */
+  void TakeAgreement(vtkPolyDataSubbandNoise* other);
+
 protected:
   vtkPolyDataSubbandNoise();
   ~vtkPolyDataSubbandNoise() override;
@@ -342,6 +348,7 @@ private:
   vtkPolyDataSubbandNoise(const vtkPolyDataSubbandNoise&) = delete;
   void operator=(const vtkPolyDataSubbandNoise&) = delete;
 
+  struct Agreement;
   struct Internals;
   Internals* Cache; // tiles and weights, kept while their parameters stand
 };

@@ -171,7 +171,7 @@ public:
 
   ///@{
   /// Time of the picture, in units of TimePeriod; default 0.
-  void SetTime(double time);
+  void SetTime(double time) override;
   double GetTime();
   ///@}
 

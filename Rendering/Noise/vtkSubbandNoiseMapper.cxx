@@ -103,6 +103,19 @@ int CountScales(vtkDataArray* weights, const std::string& plane, int orientation
   return scales;
 }
 
+/// Those that weights depend on.
+void CopyWeightOptions(vtkPolyDataSubbandNoise* from, vtkPolyDataSubbandNoise* to)
+{
+  to->SetWavelength(from->GetWavelength());
+  to->SetAnisotropy(from->GetAnisotropy());
+  to->SetParameterization(from->GetParameterization());
+  to->SetMethod(from->GetMethod());
+  to->SetOrientations(from->GetOrientations());
+  to->SetWrapSeams(from->GetWrapSeams());
+  to->SetBlendSeams(from->GetBlendSeams());
+  to->SetTileSize(from->GetTileSize());
+}
+
 /// VTK's message without its file, line and class.
 std::string MessageOf(void* text)
 {
@@ -547,6 +560,33 @@ double vtkSubbandNoiseMapper::GetResolvedWavelength()
   return this->Internal->Filter->GetResolvedWavelength();
 }
 
+void vtkSubbandNoiseMapper::ShareExtremes(
+  vtkDataObject* data, vtkMultiProcessController* controller)
+{
+  vtkNew<vtkPolyDataSubbandNoise> all;
+  CopyWeightOptions(this->Internal->Filter, all);
+  all->WeightsOnlyOn();
+  all->SetController(controller);
+  for (int i = 0; i < InputArrays; ++i)
+  {
+    all->SetInputArrayToProcess(i, this->GetInputArrayInformation(i));
+  }
+  vtkNew<vtkPolyData> nothing;
+  all->SetInputDataObject(data ? data : nothing);
+  // What there is to say, the mapper's own filter says.
+  vtkNew<vtkCallbackCommand> silent;
+  silent->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
+  all->AddObserver(vtkCommand::ErrorEvent, silent);
+  all->AddObserver(vtkCommand::WarningEvent, silent);
+  all->Update();
+  this->Internal->Filter->TakeAgreement(all);
+}
+
+void vtkSubbandNoiseMapper::ShareExtremes(vtkSubbandNoiseMapper* other)
+{
+  this->Internal->Filter->TakeAgreement(other->Internal->Filter);
+}
+
 int vtkSubbandNoiseMapper::GetOrientationsInUse()
 {
   return this->Internal->Variant.Orientations;
@@ -564,14 +604,7 @@ vtkIdType vtkSubbandNoiseMapper::GetWeightBytes()
 
 void vtkSubbandNoiseMapper::SetOptionsFrom(vtkPolyDataSubbandNoise* filter)
 {
-  this->SetWavelength(filter->GetWavelength());
-  this->SetAnisotropy(filter->GetAnisotropy());
-  this->SetParameterization(filter->GetParameterization());
-  this->SetMethod(filter->GetMethod());
-  this->SetOrientations(filter->GetOrientations());
-  this->SetWrapSeams(filter->GetWrapSeams());
-  this->SetBlendSeams(filter->GetBlendSeams());
-  this->SetTileSize(filter->GetTileSize());
+  CopyWeightOptions(filter, this->Internal->Filter);
   this->SetOctaves(filter->GetOctaves());
   this->SetPersistence(filter->GetPersistence());
   this->SetFunction(filter->GetFunction());

@@ -33,6 +33,7 @@
 
 #include <memory> // For std::unique_ptr
 
+class vtkMultiProcessController;
 class vtkPolyDataSubbandNoise;
 
 class STEERABLENOISERENDERING_EXPORT vtkSubbandNoiseMapper : public vtkSurfaceNoiseMapper
@@ -125,7 +126,7 @@ public:
 
   ///@{
   /// Time of the picture, in units of TimePeriod; default 0.
-  void SetTime(double time);
+  void SetTime(double time) override;
   double GetTime();
   ///@}
 
@@ -144,6 +145,15 @@ public:
   bool GetFloatTiles();
   vtkBooleanMacro(FloatTiles, bool);
   ///@}
+
+  /**
+   * Wavelength, tiles and all that depends on the whole surface come from `data`, the part of the surface on this rank, and
+   * the parts of the other ranks of `controller`, which all call this with the same options. By default the mapper's own input
+   * is all there is.
+   */
+  void ShareExtremes(vtkDataObject* data, vtkMultiProcessController* controller);
+  /// Takes what another mapper's are from.
+  void ShareExtremes(vtkSubbandNoiseMapper* other);
 
   /// Takes the options of a filter.
   void SetOptionsFrom(vtkPolyDataSubbandNoise* filter);

@@ -100,6 +100,9 @@ public:
   bool HasTranslucentPolygonalGeometry() override;
   ///@}
 
+  /// Time of the picture, for noise that moves with it.
+  virtual void SetTime(double time) = 0;
+
   void ShallowCopy(vtkAbstractMapper* mapper) override;
 
   struct DrawnState;

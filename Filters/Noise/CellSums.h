@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
@@ -54,7 +55,7 @@ public:
   {
     constexpr double most = INT32_MAX;
     const Eigen::Array3d steps = value.array() * this->StepsPerUnit;
-    if (steps.allFinite())
+    if (std::isfinite(steps.sum()))
     {
       // Rounds to the nearest in one instruction, as the conversion of something larger than 2^52 does.
       constexpr double rounding = 6755399441055744.0;

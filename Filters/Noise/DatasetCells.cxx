@@ -19,19 +19,12 @@ namespace noise
 {
 namespace
 {
-struct KindOfCell
-{
-  int Dimension = 0;
-  bool Curved = false;
-};
-
 /// VTK's answers for each type, asked once.
-const KindOfCell& GetKind(int type)
+const DatasetCells::Kind* GetKinds()
 {
   static const auto kinds = []
   {
-    std::array<KindOfCell, VTK_NUMBER_OF_CELL_TYPES> all;
-    vtkNew<vtkGenericCell> cell;
+    std::array<DatasetCells::Kind, VTK_NUMBER_OF_CELL_TYPES> all;
     for (int i = 0; i < VTK_NUMBER_OF_CELL_TYPES; ++i)
     {
       if (vtkSmartPointer<vtkCell> known = vtkSmartPointer<vtkCell>::Take(vtkGenericCell::InstantiateCell(i)))
@@ -41,7 +34,7 @@ const KindOfCell& GetKind(int type)
     }
     return all;
   }();
-  return kinds.at(static_cast<std::size_t>(type));
+  return kinds.data();
 }
 
 /// Sets both, or none.
@@ -62,6 +55,7 @@ void SetLists(vtkCellArray* cells, Lists& lists, const Id*)
 DatasetCells::DatasetCells(vtkDataSet* dataset)
   : DataSet(dataset)
   , Number(dataset->GetNumberOfCells())
+  , Kinds(GetKinds())
 {
   if (this->Number == 0)
   {
@@ -76,31 +70,31 @@ DatasetCells::DatasetCells(vtkDataSet* dataset)
   }
   else if (auto* surface = vtkPolyData::SafeDownCast(dataset))
   {
-    struct Kind
+    struct Part
     {
       vtkCellArray* Cells;
       unsigned char TypesOfSizes[6];
     };
     constexpr unsigned char strip = VTK_TRIANGLE_STRIP;
-    const Kind kinds[] = {
+    const Part parts[] = {
       { surface->GetVerts(),
         { VTK_POLY_VERTEX, VTK_VERTEX, VTK_POLY_VERTEX, VTK_POLY_VERTEX, VTK_POLY_VERTEX, VTK_POLY_VERTEX } },
       { surface->GetLines(), { VTK_POLY_LINE, VTK_POLY_LINE, VTK_LINE, VTK_POLY_LINE, VTK_POLY_LINE, VTK_POLY_LINE } },
       { surface->GetPolys(), { VTK_POLYGON, VTK_POLYGON, VTK_POLYGON, VTK_TRIANGLE, VTK_QUAD, VTK_POLYGON } },
       { surface->GetStrips(), { strip, strip, strip, strip, strip, strip } }
     };
-    for (const Kind& kind : kinds)
+    for (const Part& part : parts)
     {
-      if (kind.Cells->GetNumberOfCells() > 0)
+      if (part.Cells->GetNumberOfCells() > 0)
       {
-        for (const unsigned char type : kind.TypesOfSizes)
+        for (const unsigned char type : part.TypesOfSizes)
         {
           present[type] = true;
         }
-        if (kind.Cells->GetNumberOfCells() == this->Number)
+        if (part.Cells->GetNumberOfCells() == this->Number)
         {
-          std::copy_n(kind.TypesOfSizes, 6, this->TypesOfSizes);
-          this->SetCells(kind.Cells);
+          std::copy_n(part.TypesOfSizes, 6, this->TypesOfSizes);
+          this->SetCells(part.Cells);
         }
       }
     }
@@ -116,7 +110,7 @@ DatasetCells::DatasetCells(vtkDataSet* dataset)
   {
     if (present[static_cast<std::size_t>(type)])
     {
-      this->Dimensions.set(static_cast<std::size_t>(GetDimension(type)));
+      this->Dimensions.set(static_cast<std::size_t>(this->GetDimension(type)));
     }
   }
   if (!this->Wide.Offsets && !this->Narrow.Offsets)
@@ -132,16 +126,6 @@ void DatasetCells::SetCells(vtkCellArray* cells)
 {
   SetLists(cells, this->Wide, this->Wide.Offsets);
   SetLists(cells, this->Narrow, this->Narrow.Offsets);
-}
-
-int DatasetCells::GetDimension(int type)
-{
-  return GetKind(type).Dimension;
-}
-
-bool DatasetCells::IsCurved(int type)
-{
-  return GetKind(type).Curved;
 }
 
 int DatasetCells::AskType(vtkIdType cell) const

@@ -49,9 +49,9 @@ public:
                              : this->AskType(cell);
   }
 
-  static int GetDimension(int type);
+  int GetDimension(int type) const { return this->Kinds[type].Dimension; }
   /// Quadratic cells and such of higher order.
-  static bool IsCurved(int type);
+  bool IsCurved(int type) const { return this->Kinds[type].Curved; }
   /// Whether there are cells of this dimension.
   bool Has(int dimension) const { return this->Dimensions[static_cast<std::size_t>(dimension)]; }
 
@@ -81,6 +81,12 @@ public:
     vtkSmartPointer<vtkIdList> Room;
   };
 
+  struct Kind
+  {
+    int Dimension = 0;
+    bool Curved = false;
+  };
+
 private:
   /// The arrays of a vtkCellArray.
   template <typename Id>
@@ -103,6 +109,8 @@ private:
 
   vtkDataSet* DataSet;
   vtkIdType Number;
+  /// Of each type of cell.
+  const Kind* Kinds;
   std::bitset<4> Dimensions;
   const unsigned char* Types = nullptr;
   /// Of a surface: the type of a cell by the number of its points, the last one of all that have more.

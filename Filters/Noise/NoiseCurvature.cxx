@@ -30,6 +30,13 @@ struct CellPoints
   std::vector<vtkIdType> Ids;
   std::vector<Vector3d> Places;
   std::vector<Vector3d> Directions;
+
+  void Resize(std::size_t count)
+  {
+    this->Ids.resize(count);
+    this->Places.resize(count);
+    this->Directions.resize(count);
+  }
 };
 
 /// Unit vector, or 0 if there is none.
@@ -39,7 +46,7 @@ Vector3d GetDirection(const steerable::TupleReader<float>& vectors, vtkIdType sa
   const float* vector = vectors.Read(static_cast<std::size_t>(sample), 1, scratch);
   const Vector3d v = Eigen::Map<const Eigen::Vector3f>(vector).cast<double>();
   const double length = v.norm();
-  return std::isfinite(length) && length > 0.0 ? Vector3d(v / length) : Vector3d::Zero();
+  return std::isfinite(length) && length > 0.0 ? Vector3d(v * (1.0 / length)) : Vector3d::Zero();
 }
 
 /// The matrix J that fits du ≈ J dx best, in directions in which there are dx.
@@ -123,7 +130,8 @@ struct CellAxes
  * Of `count` points of a cell of this type from `first` on: from one corner of a simplex to the others; of a quadrangle and a
  * hexahedron the means of the sides along each axis, which with parallel sides is what fits them best. False for others.
  */
-bool GetAxes(const CellPoints& cell, std::size_t first, std::size_t count, int type, CellAxes& axes)
+bool GetAxes(const CellPoints& cell, std::size_t first, std::size_t count, int type, int dimension,
+  CellAxes& axes)
 {
   const auto set = [&](auto&& difference)
   {
@@ -131,34 +139,36 @@ bool GetAxes(const CellPoints& cell, std::size_t first, std::size_t count, int t
     difference(cell.Directions.data() + first, axes.Directions);
     return true;
   };
-  const auto dimension = static_cast<std::size_t>(DatasetCells::GetDimension(type));
-  if (dimension > 1 && count == dimension + 1)
+  if (dimension > 1 && count == static_cast<std::size_t>(dimension) + 1)
   {
     return set(
       [&](const Vector3d* at, Vector3d* axis)
       {
-        for (std::size_t i = 0; i < dimension; ++i)
+        for (int i = 0; i < dimension; ++i)
         {
           axis[i] = at[i + 1] - at[0];
         }
       });
   }
-  if (type == VTK_QUAD && count == 4)
+  // The corners of pixels and voxels are in the order of an image, those of others go round.
+  const bool image = type == VTK_PIXEL || type == VTK_VOXEL;
+  if ((type == VTK_QUAD || type == VTK_PIXEL) && count == 4)
   {
     return set(
-      [](const Vector3d* at, Vector3d* axis)
+      [&](const Vector3d* at, Vector3d* axis)
       {
-        const Vector3d diagonals[2] = { at[2] - at[0], at[1] - at[3] };
+        const Vector3d diagonals[2] = { at[2 + image] - at[0], at[1] - at[3 - image] };
         axis[0] = 0.5 * (diagonals[0] + diagonals[1]);
         axis[1] = 0.5 * (diagonals[0] - diagonals[1]);
       });
   }
-  if (type == VTK_HEXAHEDRON && count == 8)
+  if ((type == VTK_HEXAHEDRON || type == VTK_VOXEL) && count == 8)
   {
     return set(
-      [](const Vector3d* at, Vector3d* axis)
+      [&](const Vector3d* at, Vector3d* axis)
       {
-        const Vector3d diagonals[4] = { at[6] - at[0], at[7] - at[1], at[5] - at[3], at[4] - at[2] };
+        const Vector3d diagonals[4] = { at[6 + image] - at[0], at[7 - image] - at[1],
+          at[5] - at[3 - image], at[4] - at[2 + image] };
         const Vector3d even = diagonals[0] - diagonals[3];
         const Vector3d odd = diagonals[2] - diagonals[1];
         axis[0] = 0.25 * (even + odd);
@@ -200,12 +210,12 @@ bool GetGradientOfAxes(const CellAxes& axes, int dimension, Matrix3d& gradient)
 }
 
 /// Gradient of the points [first, first + count) of a cell of this type.
-Matrix3d GetGradient(const CellPoints& cell, std::size_t first, std::size_t count, int type)
+Matrix3d GetGradient(
+  const CellPoints& cell, std::size_t first, std::size_t count, int type, int dimension)
 {
-  const int dimension = DatasetCells::GetDimension(type);
   CellAxes axes;
   Matrix3d gradient;
-  if (GetAxes(cell, first, count, type, axes) && GetGradientOfAxes(axes, dimension, gradient))
+  if (GetAxes(cell, first, count, type, dimension, axes) && GetGradientOfAxes(axes, dimension, gradient))
   {
     return gradient;
   }
@@ -240,14 +250,15 @@ template <class Get>
 void SetPoints(const CellIds& ids, const PointPlaces& places, Vector3d side, bool keepAll,
   CellPoints& cell, Get&& getDirection)
 {
-  cell.Ids.clear();
-  cell.Places.clear();
-  cell.Directions.clear();
+  const auto size = static_cast<std::size_t>(ids.size());
+  cell.Resize(size);
+  std::size_t count = 0;
   for (const vtkIdType point : ids)
   {
     Vector3d u = getDirection(point);
     const Vector3d place = places(point);
-    if (u.isZero(0.0) || !place.allFinite())
+    // What is no place, or no direction, which are unit vectors, in the fewest steps.
+    if (!(u.squaredNorm() > 0.0) || !std::isfinite(place.sum()))
     {
       if (!keepAll)
       {
@@ -255,11 +266,13 @@ void SetPoints(const CellIds& ids, const PointPlaces& places, Vector3d side, boo
       }
       u.setZero();
     }
-    side = side.isZero(0.0) ? u : side;
-    cell.Ids.push_back(point);
-    cell.Places.push_back(place);
-    cell.Directions.push_back(u.dot(side) < 0.0 ? Vector3d(-u) : u);
+    side = side.squaredNorm() > 0.0 ? side : u;
+    cell.Ids[count] = point;
+    cell.Places[count] = place;
+    cell.Directions[count] = u.dot(side) < 0.0 ? Vector3d(-u) : u;
+    ++count;
   }
+  cell.Resize(count);
 }
 
 /// Of points, from the cells around them.
@@ -279,7 +292,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
                vtkIdType id, PointSums::Shares& shares) mutable
       {
         const int type = cells.GetType(id);
-        const int dimension = DatasetCells::GetDimension(type);
+        const int dimension = cells.GetDimension(type);
         if (dimension == 0 || hidden.HasCell(id))
         {
           return;
@@ -297,7 +310,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
           {
             continue;
           }
-          const Matrix3d gradient = GetGradient(cell, first, size, type);
+          const Matrix3d gradient = GetGradient(cell, first, size, type, dimension);
           for (std::size_t i = first; i < first + size; ++i)
           {
             sums.Append(shares, cell.Ids[i], gradient * cell.Directions[i]);
@@ -353,7 +366,8 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
               return Eigen::Map<const Eigen::Vector3f>(points->GetPointer(3 * point))
                 .cast<double>();
             });
-          result = GetGradient(cell, 0, cell.Ids.size(), cells.GetType(id)) * u;
+          const int type = cells.GetType(id);
+          result = GetGradient(cell, 0, cell.Ids.size(), type, cells.GetDimension(type)) * u;
         }
         Eigen::Map<Eigen::Vector3f>(curvature->GetPointer(3 * id)) = result.cast<float>();
       }

@@ -287,13 +287,13 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
   vtkDataArray* own = attributes->GetNormals();
   const auto isSurface = [&](vtkIdType cell)
   {
-    return DatasetCells::GetDimension(cells.GetType(cell)) == 2 &&
+    return cells.GetDimension(cells.GetType(cell)) == 2 &&
       (this->Cells || !this->Hidden.HasCell(cell));
   };
 
   // A polygon's sides bend, but VTK takes it for flat inside.
   const auto isCurved = [&](int type)
-  { return DatasetCells::IsCurved(type) && type != VTK_QUADRATIC_POLYGON; };
+  { return cells.IsCurved(type) && type != VTK_QUADRATIC_POLYGON; };
   vtkSMPThreadLocal<std::shared_ptr<CurvedCell>> curvedCells;
   const auto getCurved = [&](vtkIdType cell) -> CurvedCell*
   {
@@ -377,7 +377,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
   DatasetCells::Reader read(cells);
   for (vtkIdType cell = 0; cells.Has(3) && cell < cells.GetNumberOfCells(); ++cell)
   {
-    if (DatasetCells::GetDimension(cells.GetType(cell)) == 3 && !this->Hidden.HasCell(cell))
+    if (cells.GetDimension(cells.GetType(cell)) == 3 && !this->Hidden.HasCell(cell))
     {
       for (const vtkIdType point : read(cell))
       {
@@ -666,6 +666,14 @@ namespace
 {
 using Places = std::vector<Eigen::Vector3d>;
 
+/// The root of their number; that of squares and cubes, which most cells are, without taking it.
+double SamplesOnSide(std::size_t count, int dimension)
+{
+  return count == std::size_t(1) << dimension
+    ? 2.0
+    : std::pow(static_cast<double>(count), 1.0 / dimension);
+}
+
 /// Spacing along each axis of samples that fill a cell of this dimension; `whole`: of the cell's sides.
 Eigen::Array3d SpacingOf(const Eigen::Vector3d* places, std::size_t count, int dimension, bool whole)
 {
@@ -687,7 +695,7 @@ Eigen::Array3d SpacingOf(const Eigen::Vector3d* places, std::size_t count, int d
     return (variance * ((dimension + 1.0) * (dimension + 1.0) / dimension)).sqrt();
   }
   // p intervals of h on a side: variance h^2 p (p + 2) / 12.
-  const double intervals = std::pow(static_cast<double>(count), 1.0 / dimension) - 1.0;
+  const double intervals = SamplesOnSide(count, dimension) - 1.0;
   const Eigen::Array3d spacing =
     (variance * (12.0 / (intervals * (intervals + 2.0)))).sqrt();
   return whole ? Eigen::Array3d(spacing * intervals) : spacing;
@@ -851,7 +859,7 @@ void SampleSpacing::Add(
       return;
     }
     const int type = allCells.GetType(id);
-    const int dimension = slab >= 0 ? 2 : DatasetCells::GetDimension(type);
+    const int dimension = slab >= 0 ? 2 : allCells.GetDimension(type);
     const CellIds ids = read(id);
     if (dimension == 0)
     {

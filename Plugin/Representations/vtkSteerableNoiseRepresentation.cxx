@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSteerableNoiseRepresentation.h"
 
-#include "vtkMapper.h"
 #include "vtkMultiProcessController.h"
 #include "vtkObjectFactory.h"
 #include "vtkPVGeometryFilter.h"
-#include "vtkPVView.h"
 #include "vtkSteerableNoiseMapper.h"
 
 #include <algorithm>
@@ -15,38 +13,24 @@ vtkStandardNewMacro(vtkSteerableNoiseRepresentation);
 
 vtkSteerableNoiseRepresentation::vtkSteerableNoiseRepresentation()
 {
-  for (vtkMapper** mapper :
-    { &this->Mapper, &this->LODMapper, &this->BackfaceMapper, &this->LODBackfaceMapper })
-  {
-    (*mapper)->Delete();
-    *mapper = vtkSteerableNoiseMapper::New();
-  }
-  this->SetupDefaults();
+  this->UseMappers<vtkSteerableNoiseMapper>();
 }
 
 vtkSteerableNoiseRepresentation::~vtkSteerableNoiseRepresentation() = default;
 
-std::array<vtkSteerableNoiseMapper*, 4> vtkSteerableNoiseRepresentation::GetMappers()
+std::array<vtkSteerableNoiseMapper*, 4> vtkSteerableNoiseRepresentation::GetSteerableMappers()
 {
-  return { vtkSteerableNoiseMapper::SafeDownCast(this->Mapper),
-    vtkSteerableNoiseMapper::SafeDownCast(this->LODMapper),
-    vtkSteerableNoiseMapper::SafeDownCast(this->BackfaceMapper),
-    vtkSteerableNoiseMapper::SafeDownCast(this->LODBackfaceMapper) };
-}
-
-void vtkSteerableNoiseRepresentation::SelectInputVectors(
-  int, int, int, int association, const char* name)
-{
-  for (vtkSteerableNoiseMapper* mapper : this->GetMappers())
-  {
-    mapper->SetInputArrayToProcess(0, 0, 0, association, name ? name : "");
-  }
+  const auto mappers = this->GetMappers();
+  std::array<vtkSteerableNoiseMapper*, 4> steerable;
+  std::transform(mappers.begin(), mappers.end(), steerable.begin(),
+    [](vtkSurfaceNoiseMapper* mapper) { return vtkSteerableNoiseMapper::SafeDownCast(mapper); });
+  return steerable;
 }
 
 #define STEERABLENOISE_FORWARD(name, type)                                                         \
   void vtkSteerableNoiseRepresentation::Set##name(type value)                                      \
   {                                                                                                \
-    for (vtkSteerableNoiseMapper * mapper : this->GetMappers())                                    \
+    for (vtkSteerableNoiseMapper * mapper : this->GetSteerableMappers())                                    \
     {                                                                                              \
       mapper->Set##name(value);                                                                    \
     }                                                                                              \
@@ -65,8 +49,6 @@ STEERABLENOISE_FORWARD(Speed, double)
 STEERABLENOISE_FORWARD(TimePeriod, double)
 STEERABLENOISE_FORWARD(Lacunarity, double)
 STEERABLENOISE_FORWARD(Gain, double)
-STEERABLENOISE_FORWARD(NoiseIntensity, double)
-STEERABLENOISE_FORWARD(NoiseContrast, double)
 STEERABLENOISE_FORWARD(FeatureSizeMode, int)
 STEERABLENOISE_FORWARD(StrengthMode, int)
 STEERABLENOISE_FORWARD(Basis, int)
@@ -75,33 +57,15 @@ STEERABLENOISE_FORWARD(Seed, int)
 STEERABLENOISE_FORWARD(FollowCurvature, bool)
 STEERABLENOISE_FORWARD(Animate, bool)
 STEERABLENOISE_FORWARD(VectorsPerCell, bool)
-STEERABLENOISE_FORWARD(UseMaskColor, bool)
 
 // All ranks look for fill values together, in RequestData.
 void vtkSteerableNoiseRepresentation::SetMaskUpperThreshold(double threshold)
 {
-  for (vtkSteerableNoiseMapper* mapper : this->GetMappers())
+  for (vtkSteerableNoiseMapper* mapper : this->GetSteerableMappers())
   {
     mapper->SetMaskUpperThreshold(threshold);
   }
   this->MarkModified();
-}
-
-// A mapper's own ColorMode is VTK's.
-void vtkSteerableNoiseRepresentation::SetColorMode(int mode)
-{
-  for (vtkSteerableNoiseMapper* mapper : this->GetMappers())
-  {
-    mapper->SetNoiseColorMode(mode);
-  }
-}
-
-void vtkSteerableNoiseRepresentation::SetMaskColor(double red, double green, double blue)
-{
-  for (vtkSteerableNoiseMapper* mapper : this->GetMappers())
-  {
-    mapper->SetMaskColor(red, green, blue);
-  }
 }
 
 int vtkSteerableNoiseRepresentation::RequestData(
@@ -112,25 +76,12 @@ int vtkSteerableNoiseRepresentation::RequestData(
   vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
   if (controller && controller->GetNumberOfProcesses() > 1)
   {
-    const auto mappers = this->GetMappers();
+    const auto mappers = this->GetSteerableMappers();
     mappers[0]->ShareExtremes(this->GeometryFilter->GetOutputDataObject(0), controller);
     std::for_each(mappers.begin() + 1, mappers.end(),
       [&](vtkSteerableNoiseMapper* mapper) { mapper->ShareExtremes(mappers[0]); });
   }
   return result;
-}
-
-int vtkSteerableNoiseRepresentation::ProcessViewRequest(
-  vtkInformationRequestKey* request, vtkInformation* inInfo, vtkInformation* outInfo)
-{
-  if (request == vtkPVView::REQUEST_RENDER())
-  {
-    for (vtkSteerableNoiseMapper* mapper : this->GetMappers())
-    {
-      mapper->SetTime(this->GetUpdateTimeValid() ? this->GetUpdateTime() : 0.0);
-    }
-  }
-  return this->Superclass::ProcessViewRequest(request, inInfo, outInfo);
 }
 
 void vtkSteerableNoiseRepresentation::PrintSelf(ostream& os, vtkIndent indent)

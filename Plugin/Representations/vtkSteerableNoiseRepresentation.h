@@ -4,8 +4,8 @@
  * @class   vtkSteerableNoiseRepresentation
  * @brief   ParaView's surface representation with vtkSteerableNoiseMapper
  *
- * Hands its properties on to its mappers, which document them; lets all ranks agree on what automatic values come
- * from; and gives the mappers the time of the view.
+ * Hands its properties on to its mappers, which document them, and lets all ranks agree on what automatic values come
+ * from.
  *
  * @sa
  * vtkSteerableNoiseMapper
@@ -14,22 +14,19 @@
 #define vtkSteerableNoiseRepresentation_h
 
 #include "SteerableNoiseRepresentationsModule.h" // For export macro
-#include "vtkGeometryRepresentationWithFaces.h"
+#include "vtkSurfaceNoiseRepresentation.h"
 
 #include <array> // For mappers
 
 class vtkSteerableNoiseMapper;
 
 class STEERABLENOISEREPRESENTATIONS_EXPORT vtkSteerableNoiseRepresentation
-  : public vtkGeometryRepresentationWithFaces
+  : public vtkSurfaceNoiseRepresentation
 {
 public:
   static vtkSteerableNoiseRepresentation* New();
-  vtkTypeMacro(vtkSteerableNoiseRepresentation, vtkGeometryRepresentationWithFaces);
+  vtkTypeMacro(vtkSteerableNoiseRepresentation, vtkSurfaceNoiseRepresentation);
   void PrintSelf(ostream& os, vtkIndent indent) override;
-
-  /// The array that steers; association as in vtkDataObject::FieldAssociations. No name: active vectors.
-  void SelectInputVectors(int, int, int, int association, const char* name);
 
   ///@{
   /// See vtkSteerableNoiseMapper.
@@ -47,23 +44,15 @@ public:
   void SetTimePeriod(double value);
   void SetLacunarity(double value);
   void SetGain(double value);
-  void SetNoiseIntensity(double value);
-  void SetNoiseContrast(double value);
   void SetFeatureSizeMode(int value);
   void SetStrengthMode(int value);
   void SetBasis(int value);
   void SetOctaves(int value);
   void SetSeed(int value);
-  void SetColorMode(int value);
   void SetFollowCurvature(bool value);
   void SetAnimate(bool value);
   void SetVectorsPerCell(bool value);
-  void SetUseMaskColor(bool value);
-  void SetMaskColor(double red, double green, double blue);
   ///@}
-
-  int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* inInfo,
-    vtkInformation* outInfo) override;
 
 protected:
   vtkSteerableNoiseRepresentation();
@@ -76,8 +65,7 @@ private:
   vtkSteerableNoiseRepresentation(const vtkSteerableNoiseRepresentation&) = delete;
   void operator=(const vtkSteerableNoiseRepresentation&) = delete;
 
-  /// Of the surface, of its level of detail, and of the back faces of both.
-  std::array<vtkSteerableNoiseMapper*, 4> GetMappers();
+  std::array<vtkSteerableNoiseMapper*, 4> GetSteerableMappers();
 };
 
 #endif

@@ -36,8 +36,8 @@ void vtkSubbandNoiseRepresentation::SelectInputVectors(
   this->MarkModified();
 }
 
-#define SUBBANDNOISE_FORWARD(name, type, AFTER)                                                    \
-  void vtkSubbandNoiseRepresentation::Set##name(type value)                                        \
+#define SUBBANDNOISE_FORWARD_AS(name, own, type, AFTER)                                             \
+  void vtkSubbandNoiseRepresentation::Set##own(type value)                                         \
   {                                                                                                \
     for (vtkSubbandNoiseMapper * mapper : this->GetSubbandMappers())                               \
     {                                                                                              \
@@ -45,9 +45,10 @@ void vtkSubbandNoiseRepresentation::SelectInputVectors(
     }                                                                                              \
     AFTER;                                                                                         \
   }
+#define SUBBANDNOISE_FORWARD(name, type, AFTER) SUBBANDNOISE_FORWARD_AS(name, name, type, AFTER)
 
 SUBBANDNOISE_FORWARD(Wavelength, double, this->MarkModified())
-SUBBANDNOISE_FORWARD(Anisotropy, double, this->MarkModified())
+SUBBANDNOISE_FORWARD_AS(Anisotropy, NoiseAnisotropy, double, this->MarkModified())
 SUBBANDNOISE_FORWARD(Parameterization, int, this->MarkModified())
 SUBBANDNOISE_FORWARD(Method, int, this->MarkModified())
 SUBBANDNOISE_FORWARD(Orientations, int, this->MarkModified())
@@ -61,7 +62,7 @@ SUBBANDNOISE_FORWARD(AntiAlias, bool, )
 SUBBANDNOISE_FORWARD(Seed, int, )
 SUBBANDNOISE_FORWARD(Phase, double, )
 SUBBANDNOISE_FORWARD(TimePeriod, double, )
-SUBBANDNOISE_FORWARD(Interpolation, int, )
+SUBBANDNOISE_FORWARD_AS(Interpolation, NoiseInterpolation, int, )
 
 int vtkSubbandNoiseRepresentation::RequestData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)

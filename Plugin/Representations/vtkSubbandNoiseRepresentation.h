@@ -33,7 +33,6 @@ public:
   ///@{
   /// See vtkSubbandNoiseMapper.
   void SetWavelength(double value);
-  void SetAnisotropy(double value);
   void SetParameterization(int value);
   void SetMethod(int value);
   void SetOrientations(int value);
@@ -47,7 +46,12 @@ public:
   void SetSeed(int value);
   void SetPhase(double value);
   void SetTimePeriod(double value);
-  void SetInterpolation(int value);
+  ///@}
+
+  ///@{
+  /// Likewise; the superclass has other ones by the mapper's names.
+  void SetNoiseAnisotropy(double value);
+  void SetNoiseInterpolation(int value);
   ///@}
 
   int ProcessViewRequest(vtkInformationRequestKey* request, vtkInformation* inInfo,

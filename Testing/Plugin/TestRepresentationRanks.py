@@ -22,7 +22,7 @@ for ranks in (1, 3):
     done = subprocess.run(
         mpi + ["-n", str(ranks), pvbatch, script, folder, "representation%d" % ranks], env=environment, timeout=120)
     pt.check(done.returncode == 0, "%d rank(s) run without an error" % ranks)
-for mode in ("Pixels", "World"):
+for mode in ("Pixels", "World", "Subband"):
     one, three = read("representation1%s.png" % mode), read("representation3%s.png" % mode)
     pt.check(one.std() > 15.0, "%s: there is a picture" % mode)
     different = numpy.mean(numpy.abs(one - three).max(axis=1) > 8.0)

@@ -24,3 +24,8 @@ for mode in ("Pixels", "World"):  # World: a size from the bounds of all ranks
     display.NoiseFeatureSizeMode = mode
     display.NoiseStrengthMode = "Constant" if mode == "Pixels" else "Magnitude"
     SaveScreenshot(os.path.join(sys.argv[1], sys.argv[2] + mode + ".png"), view, ImageResolution=[400, 300])
+
+# Wavelength and tiles from the surfaces of all ranks.
+display.SetRepresentationType("Subband Noise")
+display.SubbandIntensity = 0.5
+SaveScreenshot(os.path.join(sys.argv[1], sys.argv[2] + "Subband.png"), view, ImageResolution=[400, 300])

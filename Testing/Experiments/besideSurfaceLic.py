@@ -1,22 +1,24 @@
 # SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Frames of vtkSteerableNoiseMapper and of vtkSurfaceLICMapper, timed in one run with a moving camera; the table in
-Documentation/performance.md.
+"""Frames of vtkSteerableNoiseMapper, vtkSubbandNoiseMapper and vtkSurfaceLICMapper, timed in one run with a moving camera; the
+tables in Documentation/performance.md.
 
 pvpython besideSurfaceLic.py [WIDTH...]
 
 Needs the module steerablenoise on PYTHONPATH and a display at least as large as the widest picture. A plane and a
 sphere of 64 cells, LIC with 40 steps of a quarter pixel. Pixels is the mean over an octave of sizes about 6, since
-some take one lattice and others two. The last rows are the first frames of a million triangles.
+some take one lattice and others two. Subband noise is shown at texture coordinates, along the vectors too, and on planar
+projections. The last rows are the first frames of a million triangles.
 """
 import resource
 import sys
 import time
 
 import numpy
-from steerablenoise import vtkSteerableNoiseFilter, vtkSteerableNoiseMapper
+from steerablenoise import vtkSteerableNoiseFilter, vtkSteerableNoiseMapper, vtkSubbandNoiseMapper
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
+from vtkmodules.vtkFiltersTexture import vtkTextureMapToPlane, vtkTextureMapToSphere
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICMapper
 
@@ -118,6 +120,27 @@ def noise(world):
     return mapper
 
 
+def subband(orientations, steered=False, projected=False):
+    mapper = vtkSubbandNoiseMapper()
+    mapper.SetOrientations(orientations)
+    mapper.SetWavelength(16.0)
+    mapper.SetParameterization(2 if projected else 1)
+    if steered:
+        mapper.SetInputArrayToProcess(0, 0, 0, 0, "V")
+    return mapper
+
+
+SUBBAND = [("subband K %d%s" % (k, name), options, k) for k in (8, 4) for name, options in (
+    ("", {}), (" steered", {"steered": True}), (" planes", {"projected": True}))]
+
+
+def with_texture(data, name):
+    texture = vtkTextureMapToPlane() if name == "plane" else vtkTextureMapToSphere()
+    texture.SetInputData(data)
+    texture.Update()
+    return texture.GetOutput()
+
+
 for width in [int(word) for word in sys.argv[1:]] or [1000, 1600]:
     for name, data in (("plane", plane(64)), ("sphere", sphere())):
         base = frames(lic(), data, width)
@@ -127,6 +150,13 @@ for width in [int(word) for word in sys.argv[1:]] or [1000, 1600]:
             now = frames(mapper, data, width, sizes)
             print("%-6s %4d  %-11s %6.3f s, of the processor %6.3f: LIC takes %.1f and %.1f times as long" % (
                 name, width, mode, *now, *(base / now)), flush=True)
+        data = with_texture(data, name)
+        for mode, options, k in SUBBAND:
+            mapper = subband(k, **options)
+            now = frames(mapper, data, width)
+            print("%-6s %4d  %-19s %6.3f s, of the processor %6.3f: LIC takes %.1f and %.1f times as long; tiles %.2f MB, "
+                  "weights %.2f MB" % (name, width, mode, *now, *(base / now), mapper.GetTileBytes() / 2.0 ** 20,
+                                       mapper.GetWeightBytes() / 2.0 ** 20), flush=True)
 
 fine = plane(708)
 for name, mapper in (("Surface", vtkPolyDataMapper()), ("noise", noise(True))):

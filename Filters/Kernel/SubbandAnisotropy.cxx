@@ -36,7 +36,6 @@ SubbandAnisotropy::SubbandAnisotropy(int orientations, WeightMethod method)
   , Weights(ParametersOf(orientations, method))
 {
   constexpr int directions = 128; // exact for these trigonometric polynomials
-  constexpr int perOctave = 64;
   const int scales = this->Weights.GetParameters().Pyramid.Scales;
   for (Eigen::MatrixXd& angular : this->Angular)
   {
@@ -61,18 +60,7 @@ SubbandAnisotropy::SubbandAnisotropy(int orientations, WeightMethod method)
       }
     }
   }
-  this->Radial.setZero(scales, scales);
-  for (int step = 0; step < (scales + 1) * perOctave; ++step)
-  {
-    const double y = 1.0 - (step + 0.5) / perOctave;
-    for (int j = 0; j < scales; ++j)
-    {
-      for (int l = 0; l < scales; ++l)
-      {
-        this->Radial(j, l) += std::pow(16.0, y) * RadialFilter(y + j) * RadialFilter(y + l);
-      }
-    }
-  }
+  this->Radial = RadialSlopeGram(scales);
   for (int step = 0; step <= Steps; ++step)
   {
     const double measured = step == 0 ? 1.0 : this->Measure(AnisotropyOfStep(step));

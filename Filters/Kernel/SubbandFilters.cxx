@@ -190,6 +190,25 @@ Eigen::MatrixXd RadialGram(int scales)
   return gram;
 }
 
+Eigen::MatrixXd RadialSlopeGram(int scales)
+{
+  constexpr int perOctave = 64;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(scales, scales);
+  for (int step = 0; step < (scales + 1) * perOctave; ++step)
+  {
+    const double y = 1.0 - (step + 0.5) / perOctave;
+    const double area = Ln2 * std::pow(16.0, y) / perOctave;
+    for (int j = 0; j < scales; ++j)
+    {
+      for (int k = 0; k < scales; ++k)
+      {
+        gram(j, k) += area * RadialFilter(y + j) * RadialFilter(y + k);
+      }
+    }
+  }
+  return gram;
+}
+
 double SubbandVariance(const SubbandParameters& parameters, const Eigen::MatrixXd& weights)
 {
   const Eigen::MatrixXd angular = AngularGram(parameters.Orientations) * weights;

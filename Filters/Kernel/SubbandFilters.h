@@ -120,6 +120,12 @@ Eigen::MatrixXd AngularGram(int orientations);
 Eigen::MatrixXd RadialGram(int scales);
 
 /**
+ * J x J, tridiagonal: integrals of h_j h_j' r^3 dr, in units of r0^4. Where RadialGram weighs power, this weighs squared
+ * gradients.
+ */
+Eigen::MatrixXd RadialSlopeGram(int scales);
+
+/**
  * Variance of the noise with the K x J weights gamma: BandCenter^2 tr(gamma^T Q_ang gamma Q_rad).
  * One ring (all weights of scale j one, the others zero) has 3.52617 BandCenter^2 4^-j.
  */

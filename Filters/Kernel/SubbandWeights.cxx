@@ -260,8 +260,15 @@ SubbandWeights::SubbandWeights(const SubbandWeightParameters& parameters)
   if (parameters.Method == WeightMethod::LeastSquares)
   {
     const Eigen::MatrixXd radialDual = this->Radial.inverse();
+    const Eigen::MatrixXd slopes = RadialSlopeGram(scales);
     this->Target.Fill(0, last, TargetBits,
-      [&](double c) { return Eigen::VectorXd(radialDual * ProjectRing(c, scales)); });
+      [&](double c)
+      {
+        const Eigen::VectorXd fit = radialDual * ProjectRing(c, scales);
+        // On the surface, where frequencies of this direction are 2^c times as high.
+        const double squaredGradient = std::exp2(4.0 * c) * fit.dot(slopes * fit);
+        return Eigen::VectorXd(std::sqrt(slopes(0, 0) / squaredGradient) * fit);
+      });
   }
   else if (parameters.Method == WeightMethod::PowerMatched)
   {

@@ -36,7 +36,10 @@ namespace steerable
 /// How weights are found from the metric.
 enum class WeightMethod
 {
-  LeastSquares, ///< The closest spectrum to the wanted one (paper, equation 1).
+  /// The closest spectrum to the wanted one (paper, equation 1), in each direction with its mean squared gradient: a fit
+  /// between two scales is weaker than one at a scale, which would make noise uneven by up to 1.25 where directions
+  /// have different scales.
+  LeastSquares,
   PowerMatched, ///< The wanted power in every direction and scale: the best isotropy.
   Heuristic,    ///< The wanted spectrum at the centre of each band: the cheapest.
   None          ///< Ignores the metric: an isotropic ring in the texture, for comparison.

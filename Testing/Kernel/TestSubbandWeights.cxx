@@ -135,6 +135,31 @@ TEST(SubbandWeights, IsotropyOfTheTestSet)
   }
 }
 
+// The paper's trapezoid, at any wavelength between two scales: a fit without the gain is uneven by 1.25.
+TEST(SubbandWeights, WavelengthsBetweenScalesAreEven)
+{
+  const SubbandWeightParameters parameters = Parameters(WeightMethod::LeastSquares, 8, 5);
+  const SubbandWeights solver(parameters);
+  double worst = 0.0;
+  for (double shift = 0.0; shift < 1.0; shift += 0.125)
+  {
+    for (double v = 0.1; v < 1.0; v += 0.2)
+    {
+      for (double u = 0.05; u < 1.0; u += 0.15)
+      {
+        Eigen::Matrix2d toSurface;
+        toSurface << 2.0 - v, 0.5 - u, 0.0, 1.0;
+        const Eigen::Matrix2d mapping =
+          std::exp2(1.5 + shift) / parameters.Pyramid.CenterFrequency() * toSurface.inverse();
+        const Weights gamma = Gamma(solver, mapping * mapping.transpose());
+        worst = std::max(
+          worst, MeasureSpectrum(parameters.Pyramid, gamma.data(), mapping).Anisotropy());
+      }
+    }
+  }
+  ExpectAtMost("BetweenScales", worst, 1.05);
+}
+
 TEST(SubbandWeights, WithoutCompensationAnisotropyIsTheSquaredRatio)
 {
   for (const double ratio : { 1.0, 2.0, 4.0 })
@@ -183,6 +208,38 @@ TEST(SubbandWeights, FrameOfTheSurfaceDoesNotMatter)
   }
 }
 
+/// By how much the fit of a ring at the scale c has a weaker mean squared gradient than the ring, as an amplitude: both by
+/// quadrature and normal equations of their own.
+double GainOfFit(double c, int scales)
+{
+  constexpr int perOctave = 256;
+  const int samples = perOctave * (scales + 1);
+  Eigen::MatrixXd profiles(scales, samples);
+  Eigen::VectorXd ring(samples), area(samples), slope(samples);
+  for (int n = 0; n < samples; ++n)
+  {
+    const double y = 1.0 - (n + 0.5) / perOctave;
+    for (int j = 0; j < scales; ++j)
+    {
+      profiles(j, n) = RadialFilter(y + j);
+    }
+    ring(n) = RadialFilter(y + c);
+    area(n) = std::exp2(2.0 * y);
+    slope(n) = std::exp2(4.0 * y);
+  }
+  const Eigen::MatrixXd weighted = profiles * area.asDiagonal();
+  const Eigen::VectorXd fit =
+    profiles.transpose() * (weighted * profiles.transpose()).eval().ldlt().solve(weighted * ring);
+  // All of the ring, within the pyramid or not.
+  double whole = 0.0;
+  for (int n = 0; n < 2 * perOctave; ++n)
+  {
+    const double y = 1.0 - (n + 0.5) / perOctave;
+    whole += std::exp2(4.0 * (y - c)) * std::pow(RadialFilter(y), 2);
+  }
+  return std::sqrt(whole / fit.cwiseAbs2().dot(slope));
+}
+
 // The sums and tables of the implementation against the definition, solved as it stands.
 TEST(SubbandWeights, LeastSquaresSolvesTheNormalEquations)
 {
@@ -201,7 +258,8 @@ TEST(SubbandWeights, LeastSquaresSolvesTheNormalEquations)
     const double y = 1.0 - (n / directions + 0.5) / perOctave;
     const Eigen::Vector2d e(std::cos(theta), std::sin(theta));
     const Eigen::Vector2d k = e * pyramid.CenterFrequency() * std::exp2(y);
-    target(n) = RadialFilter(0.5 * std::log2(k.dot(metric * k)));
+    const double scale = 0.5 * std::log2(e.dot(metric * e)) + std::log2(pyramid.CenterFrequency());
+    target(n) = GainOfFit(scale, J) * RadialFilter(0.5 * std::log2(k.dot(metric * k)));
     area(n) = std::exp2(2.0 * y);
     for (int c = 0; c < K * J; ++c)
     {
@@ -240,12 +298,13 @@ TEST(SubbandWeights, TablesAreAccurate)
         const Eigen::Vector2d e(std::cos(theta), std::sin(theta));
         const double c =
           std::log2((mapping.transpose() * e).norm()) + std::log2(pyramid.CenterFrequency());
+        const double gain = method == WeightMethod::LeastSquares ? GainOfFit(c, J) : 1.0;
         for (int i = 0; i < K; ++i)
         {
           for (int j = 0; j < J; ++j)
           {
             sum(i, j) += AngularFilter(i, K, theta) *
-              (method == WeightMethod::LeastSquares ? std::pow(4.0, -j) * RadialOverlap(c - j)
+              (method == WeightMethod::LeastSquares ? gain * std::pow(4.0, -j) * RadialOverlap(c - j)
                                                     : std::sqrt(PowerOverlap(c - j)));
           }
         }

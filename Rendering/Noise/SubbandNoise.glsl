@@ -12,6 +12,7 @@
 // set of tiles and 15 operations a layer.
 
 uniform sampler2D noiseTiles;
+uniform int noiseTaps; // 4: what a compiler does not know it does not unroll, which takes seconds for many layers
 
 /// The four bands of a layer at a place in the tile, in [0, 1). `tile`: where texel (0, 0) is in the texture, and the
 /// size of the tile; in texels with NOISE_CUBIC, in textures without.
@@ -26,10 +27,10 @@ vec4 TileAt(vec4 tile, vec2 place)
   vec2 w[4] = vec2[4](((-0.5 * t + 1.0) * t - 0.5) * t, (1.5 * t - 2.5) * t * t + 1.0,
     ((-1.5 * t + 2.0) * t + 0.5) * t, (0.5 * t - 0.5) * t * t);
   vec4 bands = vec4(0.0);
-  for (int y = 0; y < 4; ++y)
+  for (int y = 0; y < noiseTaps; ++y)
   {
     vec4 row = vec4(0.0);
-    for (int x = 0; x < 4; ++x)
+    for (int x = 0; x < noiseTaps; ++x)
     {
       row += w[x].x * texelFetch(noiseTiles, ivec2(tile.xy) + (corner + ivec2(x, y)) % size, 0);
     }

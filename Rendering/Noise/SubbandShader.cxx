@@ -216,6 +216,10 @@ void SetSubbandUniforms(vtkShaderProgram* program, const SubbandVariant& variant
   {
     program->SetUniformf("noisePersistence", static_cast<float>(persistence));
   }
+  if (program->IsUniformUsed("noiseTaps"))
+  {
+    program->SetUniformi("noiseTaps", 4);
+  }
   if (program->IsUniformUsed("noiseShift"))
   {
     std::vector<float> shifts(2 * static_cast<std::size_t>(variant.Octaves), 0.0f);

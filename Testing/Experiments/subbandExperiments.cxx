@@ -155,7 +155,7 @@ void Trapezoid()
   Report(
     "least squares K=8, worst strip", *std::max_element(fitted.begin(), fitted.end()), 1.0, 1.15);
   Report("least squares K=8 between scales, worst strip",
-    *std::max_element(between.begin(), between.end()), 1.0, 1.25);
+    *std::max_element(between.begin(), between.end()), 1.0, 1.12);
   Report(
     "heuristic K=8, worst strip", *std::max_element(heuristic.begin(), heuristic.end()), 1.0, 1.75);
 }

@@ -102,7 +102,10 @@ Difference Compare(vtkPolyData* sheet, const Setting& set, int interpolation, bo
   filter->AntiAliasOff();
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "None");
   set(filter);
-  filter->SetOrientations(FindOrientations(sheet, filter));
+  if (!sheet->GetPointData()->GetTCoords())
+  {
+    filter->SetOrientations(FindOrientations(sheet, filter));
+  }
   filter->Update();
   vtkDataArray* expected =
     vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPointData()->GetArray("SubbandNoise");
@@ -133,16 +136,23 @@ Difference Compare(vtkPolyData* sheet, const Setting& set, int interpolation, bo
   return difference;
 }
 
-const std::pair<const char*, Setting> Settings[] = {
-  { "defaults", [](vtkPolyDataSubbandNoise*) {} },
+struct NamedSetting
+{
+  const char* Name;
+  Setting Set;
+  bool OnPlanes = false; ///< Compared on planar projections too: their programs take seconds to compile.
+};
+
+const NamedSetting Settings[] = {
+  { "defaults", [](vtkPolyDataSubbandNoise*) {}, true },
   { "steered", [](vtkPolyDataSubbandNoise* f)
-    { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "V"); } },
+    { f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "V"); }, true },
   { "Anisotropy 2", [](vtkPolyDataSubbandNoise* f)
     {
       f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "V");
       f->SetAnisotropy(2.0);
     } },
-  { "K 4", [](vtkPolyDataSubbandNoise* f) { f->SetOrientations(4); } },
+  { "K 4", [](vtkPolyDataSubbandNoise* f) { f->SetOrientations(4); }, true },
   { "K 3", [](vtkPolyDataSubbandNoise* f) { f->SetOrientations(3); } },
   { "K 6", [](vtkPolyDataSubbandNoise* f) { f->SetOrientations(6); } },
   { "Power Matched", [](vtkPolyDataSubbandNoise* f)
@@ -153,13 +163,18 @@ const std::pair<const char*, Setting> Settings[] = {
       f->SetOctaves(3);
       f->SetPersistence(0.6);
       f->SetSeed(9);
-    } },
+      f->SetOrientations(4);
+    }, true },
   { "Turbulence", [](vtkPolyDataSubbandNoise* f)
     {
       f->SetOctaves(2);
       f->SetFunction(vtkPolyDataSubbandNoise::TURBULENCE);
     } },
-  { "Phase", [](vtkPolyDataSubbandNoise* f) { f->SetPhase(0.3); } },
+  { "Phase", [](vtkPolyDataSubbandNoise* f)
+    {
+      f->SetPhase(0.3);
+      f->SetOrientations(3);
+    }, true },
   { "Seed", [](vtkPolyDataSubbandNoise* f) { f->SetSeed(-77); } },
   { "TileSize 512", [](vtkPolyDataSubbandNoise* f) { f->SetTileSize(512); } },
   { "TileSize 100", [](vtkPolyDataSubbandNoise* f) { f->SetTileSize(100); } },
@@ -178,11 +193,14 @@ TEST(SubbandNoiseMapper, EqualsTheFilterWithEveryOption)
   for (const bool texture : { true, false })
   {
     const auto sheet = MakeSheet(texture);
-    for (const auto& setting : Settings)
+    for (const NamedSetting& setting : Settings)
     {
-      const Difference exact = Compare(sheet, setting.second, vtkSubbandNoiseMapper::CUBIC, true);
-      EXPECT_GT(exact.Count, 380) << setting.first << texture;
-      EXPECT_LE(exact.Largest, 1e-3) << setting.first << texture;
+      if (texture || setting.OnPlanes)
+      {
+        const Difference exact = Compare(sheet, setting.Set, vtkSubbandNoiseMapper::CUBIC, true);
+        EXPECT_GT(exact.Count, 380) << setting.Name << texture;
+        EXPECT_LE(exact.Largest, 1e-3) << setting.Name << texture;
+      }
     }
   }
 }

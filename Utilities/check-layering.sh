@@ -15,8 +15,8 @@ forbid() { # what, pattern, folder
 forbid "The kernel includes VTK or ParaView" "vtk|pq|Qt" Filters/Kernel
 forbid "The filters include ParaView or OpenGL" "vtkPV|vtkSM[^P]|vtkSI|pq|Qt|vtkOpenGL|GL/" Filters/Noise
 forbid "The mapper includes ParaView" "vtkPV|vtkSM[^P]|vtkSI|pq|Qt" Rendering
-forbid "The mapper includes more of the kernel than parameters, metrics' constants and hash" \
-  "SteerableNoise(Reference)?\.h|Fast/|Subband" Rendering
+forbid "The mappers include more of the kernel than parameters, metrics' constants, hash and tiles" \
+  "SteerableNoise(Reference)?\.h|Fast/|Subband(Weights|Filters|Anisotropy)" Rendering
 forbid "The representation includes the kernel" \
   "NoiseParameters|LatticeHash|MetricTensor|SteerableNoise(Reference)?\.h|Fast/|Surflet|Subband" Plugin/Representations
 # SIMD and FFT libraries stay inside the kernel's sources.

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SubbandAtlas.h"
 
-#include "SubbandShader.h"
 #include "SubbandTiles.h"
 
 #include <algorithm>
@@ -43,8 +42,9 @@ double SubbandAtlas::RangeOf(const SubbandVariant& variant, int scale)
   return 4.0 * std::sqrt(steerable::SubbandVariance(pyramid, band));
 }
 
-void SubbandAtlas::Lay(const SubbandVariant& variant, int firstPlane)
+void SubbandAtlas::Lay()
 {
+  const SubbandVariant& variant = this->Variant;
   const int border = BorderOf(variant);
   this->Layout.clear();
   const auto add = [&](int scales, int plane)
@@ -60,7 +60,7 @@ void SubbandAtlas::Lay(const SubbandVariant& variant, int firstPlane)
   add(variant.TextureScales, 0);
   for (int axis = 0; axis < 3; ++axis)
   {
-    add(variant.PlaneScales, firstPlane + axis);
+    add(variant.PlaneScales, this->FirstPlane + axis);
   }
   // On shelves, the largest first.
   std::vector<Tile*> order;
@@ -108,32 +108,35 @@ void SubbandAtlas::Lay(const SubbandVariant& variant, int firstPlane)
   }
 }
 
-const std::vector<float>& SubbandAtlas::GetScale(
-  const SubbandVariant& variant, std::uint32_t seed, const Tile& tile, int size, int realization)
+vtkIdType SubbandAtlas::GetBytes() const
+{
+  return 4 * static_cast<vtkIdType>(this->Width) * this->Height * (this->Variant.Bytes ? 1 : 4);
+}
+
+const std::vector<float>& SubbandAtlas::GetScale(const Tile& tile, int size, int realization)
 {
   // A scale is the same in every pyramid that has it.
   std::vector<float>& values = this->Made[{ size, tile.Scale, realization }];
   if (values.empty())
   {
-    steerable::SubbandParameters pyramid = PyramidOf(variant, tile.Scales);
-    pyramid.Seed = seed;
+    steerable::SubbandParameters pyramid = PyramidOf(this->Variant, tile.Scales);
+    pyramid.Seed = this->Seed;
     pyramid.Realization = static_cast<std::uint32_t>(realization);
     values = steerable::MakeScaleTiles(pyramid, tile.Scale, size);
   }
   return values;
 }
 
-bool SubbandAtlas::Update(
-  const SubbandVariant& variant, std::uint32_t seed, double phase, int firstPlane)
+void SubbandAtlas::Update(const SubbandVariant& variant, std::uint32_t seed, int firstPlane)
 {
   const std::vector<double> madeKey = { double(variant.Orientations), double(variant.TileSize),
-    double(seed), double(variant.Cubic) };
+    double(seed) };
   std::vector<double> key = madeKey;
-  key.insert(key.end(), { double(variant.TextureScales), double(variant.PlaneScales), double(variant.Bytes), phase,
-                          double(firstPlane) });
+  key.insert(key.end(), { double(variant.Cubic), double(variant.TextureScales), double(variant.PlaneScales),
+                          double(variant.Bytes), double(firstPlane) });
   if (key == this->Key)
   {
-    return false;
+    return;
   }
   this->Key = key;
   if (madeKey != this->MadeKey)
@@ -141,28 +144,37 @@ bool SubbandAtlas::Update(
     this->Made.clear();
     this->MadeKey = madeKey;
   }
-  this->Lay(variant, firstPlane);
+  this->Variant = variant;
+  this->Seed = seed;
+  this->FirstPlane = firstPlane;
+  ++this->Version;
+  this->Lay();
+}
+
+SubbandAtlas::Image SubbandAtlas::Make(const std::array<double, 4>& weights)
+{
+  const SubbandVariant& variant = this->Variant;
   const int border = BorderOf(variant);
   const int orientations = variant.Orientations;
   const std::size_t values = 4 * static_cast<std::size_t>(this->Width) * this->Height;
-  this->Floats.assign(values, 0.0f);
-  const std::array<double, 4> loop = steerable::LoopWeights(phase);
+  Image image;
+  image.Floats.assign(values, 0.0f);
   for (const Tile& tile : this->Layout)
   {
     const int size = tile.Side - 2 * border;
     for (int m = 0; m < 4; ++m)
     {
-      if (std::abs(loop[m]) <= 1e-9)
+      if (std::abs(weights[m]) <= 1e-9)
       {
         continue;
       }
       const std::vector<float>& made =
-        this->GetScale(variant, seed, tile, size, steerable::LoopRealization(tile.Plane, m));
-      const auto weight = static_cast<float>(loop[m]);
+        this->GetScale(tile, size, steerable::LoopRealization(tile.Plane, m));
+      const auto weight = static_cast<float>(weights[m]);
       for (int y = 0; y < tile.Side; ++y)
       {
         const int fromY = (y - border + size) % size;
-        float* texel = this->Floats.data() + 4 * (static_cast<std::size_t>(tile.Y + y) * this->Width + tile.X);
+        float* texel = image.Floats.data() + 4 * (static_cast<std::size_t>(tile.Y + y) * this->Width + tile.X);
         for (int x = 0; x < tile.Side; ++x, texel += 4)
         {
           const float* from = made.data() +
@@ -175,12 +187,11 @@ bool SubbandAtlas::Update(
       }
     }
   }
-  this->Bytes.clear();
   if (!variant.Bytes)
   {
-    return true;
+    return image;
   }
-  this->Bytes.resize(values);
+  image.Bytes.resize(values);
   for (const Tile& tile : this->Layout)
   {
     const auto range = static_cast<float>(RangeOf(variant, tile.Scale));
@@ -189,12 +200,12 @@ bool SubbandAtlas::Update(
       const std::size_t first = 4 * (static_cast<std::size_t>(y) * this->Width + tile.X);
       for (std::size_t n = first; n < first + 4 * static_cast<std::size_t>(tile.Side); ++n)
       {
-        this->Bytes[n] = static_cast<std::uint8_t>(
-          std::clamp(127.5f * (this->Floats[n] / range + 1.0f) + 0.5f, 0.0f, 255.0f));
+        image.Bytes[n] = static_cast<std::uint8_t>(
+          std::clamp(127.5f * (image.Floats[n] / range + 1.0f) + 0.5f, 0.0f, 255.0f));
       }
     }
   }
-  this->Floats = std::vector<float>();
-  return true;
+  image.Floats = std::vector<float>();
+  return image;
 }
 } // namespace noise

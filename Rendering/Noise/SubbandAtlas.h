@@ -10,6 +10,11 @@
 #ifndef SubbandAtlas_h
 #define SubbandAtlas_h
 
+#include "SubbandShader.h"
+
+#include "vtkType.h"
+
+#include <array>
 #include <cstdint>
 #include <map>
 #include <tuple>
@@ -17,20 +22,29 @@
 
 namespace noise
 {
-struct SubbandVariant;
-
 class SubbandAtlas
 {
 public:
-  /// Makes the image if another one is asked for; returns whether it is another one. `firstPlane`: of the planar
-  /// projections' tiles, 0 or, beside a texture's, 1.
-  bool Update(const SubbandVariant& variant, std::uint32_t seed, double phase, int firstPlane);
+  /// What images are asked for. `firstPlane`: of the planar projections' tiles, 0 or, beside a
+  /// texture's, 1.
+  void Update(const SubbandVariant& variant, std::uint32_t seed, int firstPlane);
+
+  /// Another number for other images.
+  int GetVersion() const { return this->Version; }
 
   int GetWidth() const { return this->Width; }
   int GetHeight() const { return this->Height; }
-  /// Of the variant's kind: 4 components a texel.
-  const std::vector<std::uint8_t>& GetBytes() const { return this->Bytes; }
-  const std::vector<float>& GetFloats() const { return this->Floats; }
+  vtkIdType GetBytes() const;
+
+  /// 4 components a texel, of the variant's kind.
+  struct Image
+  {
+    std::vector<std::uint8_t> Bytes;
+    std::vector<float> Floats;
+  };
+  /// The four realizations of LoopWeights, each times its weight.
+  Image Make(const std::array<double, 4>& weights);
+
   /// Where the tile of each layer is, as TileAt of the shader wants it: 4 values. It depends on the variant alone.
   const std::vector<float>& GetTiles() const { return this->Tiles; }
 
@@ -44,18 +58,20 @@ private:
     int Side; // with the border
     int X, Y;
   };
-  void Lay(const SubbandVariant& variant, int firstPlane);
-  const std::vector<float>& GetScale(
-    const SubbandVariant& variant, std::uint32_t seed, const Tile& tile, int size, int realization);
+  void Lay();
+  const std::vector<float>& GetScale(const Tile& tile, int size, int realization);
+
+  SubbandVariant Variant;
+  std::uint32_t Seed = 0;
+  int FirstPlane = 0;
+  int Version = 0;
 
   std::vector<Tile> Layout;
   int Width = 0;
   int Height = 0;
-  std::vector<float> Floats;
-  std::vector<std::uint8_t> Bytes;
   std::vector<float> Tiles;
   std::vector<double> Key;
-  /// By scales of the pyramid, scale and realization.
+  /// By size, scale and realization.
   std::map<std::tuple<int, int, int>, std::vector<float>> Made;
   std::vector<double> MadeKey;
 };

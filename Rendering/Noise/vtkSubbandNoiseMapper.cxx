@@ -6,6 +6,7 @@
 #include "NoiseHelper.h"
 #include "SubbandAtlas.h"
 #include "SubbandShader.h"
+#include "SubbandTexture.h"
 
 #include "vtkActor.h"
 #include "vtkCallbackCommand.h"
@@ -72,9 +73,16 @@ struct vtkSubbandNoiseMapper::Internals
   std::array<double, 3> WholeRepeats = {};
 
   noise::SubbandAtlas Atlas;
-  vtkTimeStamp AtlasTime;
+  vtkTimeStamp TileUploadTime;
   vtkIdType TileBytes = 0;
   vtkIdType WeightBytes = 0;
+
+  /// In the loop at the time of the picture, [0, 1).
+  double GetPhase() const
+  {
+    const double phase = this->Phase + (this->TimePeriod > 0.0 ? this->Time / this->TimePeriod : 0.0);
+    return phase - std::floor(phase);
+  }
 
   void Update(vtkDataObject* input);
   /// Scales and kinds of lookups, from the names of the weights.
@@ -288,8 +296,7 @@ public:
   {
     this->Vertices->ReleaseGraphicsResources(window);
     this->VertexBuffer->ReleaseGraphicsResources();
-    this->Tiles->ReleaseGraphicsResources(window);
-    this->TilesTime = 0;
+    this->Tiles.Release(window);
     this->Superclass::ReleaseGraphicsResources(window);
   }
 
@@ -319,7 +326,7 @@ protected:
     }
     if (program->IsUniformUsed("noiseTiles"))
     {
-      program->SetUniformi("noiseTiles", this->Tiles->GetTextureUnit());
+      program->SetUniformi("noiseTiles", this->Tiles.GetTexture()->GetTextureUnit());
     }
   }
 
@@ -351,34 +358,21 @@ protected:
     {
       return;
     }
-    if (this->TilesTime != internals.AtlasTime.GetMTime())
+    if (this->Tiles.Update(window, internals.Atlas, internals.Variant.Bytes, !internals.Variant.Cubic,
+          internals.GetPhase()))
     {
-      this->TilesTime = internals.AtlasTime.GetMTime();
-      const noise::SubbandAtlas& atlas = internals.Atlas;
-      this->Tiles->SetContext(window);
-      const int filter =
-        internals.Variant.Cubic ? vtkTextureObject::Nearest : vtkTextureObject::Linear;
-      this->Tiles->SetMinificationFilter(filter);
-      this->Tiles->SetMagnificationFilter(filter);
-      // Tiles have borders; repeating costs more.
-      this->Tiles->SetWrapS(vtkTextureObject::ClampToEdge);
-      this->Tiles->SetWrapT(vtkTextureObject::ClampToEdge);
-      const bool bytes = internals.Variant.Bytes;
-      this->Tiles->ResetFormatAndType();
-      this->Tiles->Create2DFromRaw(static_cast<unsigned int>(atlas.GetWidth()),
-        static_cast<unsigned int>(atlas.GetHeight()), 4, bytes ? VTK_UNSIGNED_CHAR : VTK_FLOAT,
-        const_cast<void*>(bytes ? static_cast<const void*>(atlas.GetBytes().data())
-                                : static_cast<const void*>(atlas.GetFloats().data())));
+      internals.TileUploadTime.Modified();
     }
+    internals.TileBytes = this->Tiles.GetBytes();
     this->Vertices->Activate();
-    this->Tiles->Activate();
+    this->Tiles.GetTexture()->Activate();
   }
 
   void DeactivateTextures() override
   {
     if (this->GetDrawn().AnyNoise)
     {
-      this->Tiles->Deactivate();
+      this->Tiles.GetTexture()->Deactivate();
       this->Vertices->Deactivate();
     }
   }
@@ -386,8 +380,7 @@ protected:
 private:
   vtkNew<vtkTextureObject> Vertices;
   vtkNew<vtkOpenGLBufferObject> VertexBuffer;
-  vtkNew<vtkTextureObject> Tiles;
-  vtkMTimeType TilesTime = 0;
+  noise::SubbandTexture Tiles;
   std::vector<float> Lines;
 };
 vtkStandardNewMacro(vtkSubbandNoiseHelper);
@@ -492,15 +485,8 @@ void vtkSubbandNoiseMapper::Render(vtkRenderer* renderer, vtkActor* actor)
   Internals& internals = *this->Internal;
   if (this->GetDrawn().AnyNoise)
   {
-    double phase = internals.Phase + (internals.TimePeriod > 0.0 ? internals.Time / internals.TimePeriod : 0.0);
-    phase -= std::floor(phase);
-    if (internals.Atlas.Update(
-          internals.Variant, static_cast<std::uint32_t>(internals.Seed), phase, internals.FirstPlane))
-    {
-      internals.AtlasTime.Modified();
-      internals.TileBytes = 4 * static_cast<vtkIdType>(internals.Atlas.GetWidth()) *
-        internals.Atlas.GetHeight() * (internals.Variant.Bytes ? 1 : 4);
-    }
+    internals.Atlas.Update(
+      internals.Variant, static_cast<std::uint32_t>(internals.Seed), internals.FirstPlane);
   }
   this->Superclass::Render(renderer, actor);
 }
@@ -590,6 +576,11 @@ void vtkSubbandNoiseMapper::ShareExtremes(vtkSubbandNoiseMapper* other)
 int vtkSubbandNoiseMapper::GetOrientationsInUse()
 {
   return this->Internal->Variant.Orientations;
+}
+
+vtkMTimeType vtkSubbandNoiseMapper::GetTileUploadTime()
+{
+  return this->Internal->TileUploadTime;
 }
 
 vtkIdType vtkSubbandNoiseMapper::GetTileBytes()

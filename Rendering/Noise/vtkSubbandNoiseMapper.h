@@ -158,6 +158,12 @@ public:
   /// Takes the options of a filter.
   void SetOptionsFrom(vtkPolyDataSubbandNoise* filter);
 
+  /**
+   * When tiles were last uploaded, of all windows; 0: never. Once the phase has changed all tiles of the loop are there, four
+   * times as many, and the graphics card blends them.
+   */
+  vtkMTimeType GetTileUploadTime();
+
   ///@{
   /// Bytes of graphics memory since the last frame, in each window: of the tiles, and of the weights of all vertices.
   vtkIdType GetTileBytes();

@@ -262,6 +262,51 @@ TEST(SubbandNoiseMapper, WhatIsDrawnUploadsNoVertices)
   EXPECT_GT(scene.Mapper->GetUploadTime(), before);
 }
 
+TEST(SubbandNoiseMapper, PhaseUploadsNothingOnceItMoves)
+{
+  Messages messages;
+  const auto sheet = MakeSheet(false);
+  for (const bool floats : { false, true })
+  {
+    Scene scene(sheet);
+    scene.Mapper->SetOrientations(4);
+    scene.Mapper->SetWavelength(30.0);
+    scene.Mapper->SetFloatTiles(floats);
+    scene.LookDown(110.0, 110.0, 256.0);
+    scene.Render();
+    const vtkIdType still = scene.Mapper->GetTileBytes();
+    scene.Mapper->SetPhase(0.1);
+    scene.Render();
+    const vtkMTimeType vertices = scene.Mapper->GetUploadTime();
+    const vtkMTimeType tiles = scene.Mapper->GetTileUploadTime();
+    EXPECT_EQ(scene.Mapper->GetTileBytes(), 5 * still);
+    for (const double phase : { 0.37, 0.8, 0.0 })
+    {
+      // The graphics card's blend is that of a mapper which uploads it.
+      scene.Mapper->SetPhase(phase);
+      const auto moved = scene.RenderNoise();
+      EXPECT_EQ(scene.Mapper->GetTileUploadTime(), tiles) << phase;
+      EXPECT_EQ(scene.Mapper->GetUploadTime(), vertices) << phase;
+      Scene other(sheet);
+      other.Mapper->ShallowCopy(scene.Mapper);
+      other.Mapper->SetInputDataObject(sheet);
+      other.LookDown(110.0, 110.0, 256.0);
+      const auto expected = other.RenderNoise();
+      double squares = 0.0;
+      int count = 0;
+      for (std::size_t i = 0; i < moved.size(); ++i)
+      {
+        ASSERT_EQ(std::isnan(moved[i]), std::isnan(expected[i]));
+        squares += std::isnan(moved[i]) ? 0.0 : std::pow(moved[i] - expected[i], 2);
+        count += !std::isnan(moved[i]);
+      }
+      EXPECT_GT(count, 10000);
+      EXPECT_LE(std::sqrt(squares / count), floats ? 1e-4 : 0.03) << phase;
+    }
+  }
+  EXPECT_EQ(messages.Get(), "");
+}
+
 TEST(SubbandNoiseMapper, BytesOfThePaper)
 {
   const auto sheet = MakeSheet(true);

@@ -276,7 +276,8 @@ SubbandTiles MakeSubbandTiles(const SubbandParameters& parameters)
   return tiles;
 }
 
-std::vector<float> MakeScaleTiles(const SubbandParameters& parameters, int scale, int size)
+std::vector<float> MakeScaleTiles(
+  const SubbandParameters& parameters, int scale, int size, TexelKind kind)
 {
   parameters.Validate();
   // A band ends an octave above its centre.
@@ -288,11 +289,19 @@ std::vector<float> MakeScaleTiles(const SubbandParameters& parameters, int scale
   const int components = parameters.Orientations;
   // Each frequency keeps its amplitude; white noise of unit variance shares it among more of them.
   const double amplitude = static_cast<double>(size) / parameters.TileSize;
+  // The projection of a wave with f cycles per texel on sums of hats.
+  const auto gain = [=](int k)
+  {
+    const double f = static_cast<double>(k) / size;
+    const double sinc = k == 0 ? 1.0 : std::sin(Pi * f) / (Pi * f);
+    return kind == TexelKind::Values ? 1.0 : 3.0 * sinc * sinc / (2.0 + std::cos(2.0 * Pi * f));
+  };
   std::vector<float> values(static_cast<std::size_t>(size) * size * components);
   for (int i = 0; i < components; ++i)
   {
     const std::vector<Complex> band = SynthesizeNoise(size, parameters.Seed, parameters.Realization,
-      [&](int kx, int ky) { return amplitude * SubbandFilter(parameters, i, scale, kx, ky); });
+      [&](int kx, int ky)
+      { return amplitude * gain(kx) * gain(ky) * SubbandFilter(parameters, i, scale, kx, ky); });
     for (std::size_t texel = 0; texel < band.size(); ++texel)
     {
       values[texel * components + i] = static_cast<float>(band[texel].real());

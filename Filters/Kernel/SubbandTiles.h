@@ -86,12 +86,21 @@ std::vector<std::complex<double>> SynthesizeNoise(int size, std::uint32_t seed,
 /// Make all bands. Throws std::invalid_argument for parameters out of range.
 SubbandTiles MakeSubbandTiles(const SubbandParameters& parameters);
 
+/// What the texels of a tile are: values of the noise, or such that bilinear lookups are closest to
+/// it everywhere, by least squares.
+enum class TexelKind
+{
+  Values,
+  Bilinear
+};
+
 /**
- * One scale of the same tiles with another number of texels: size*size texels of K floats, orientation
- * fastest, with the values of MakeSubbandTiles between its texels too. Throws std::invalid_argument for parameters out
- * of range, and where `size` is less than two texels for the scale's shortest wave.
+ * One scale of the same tiles with another number of texels: size*size texels of K floats,
+ * orientation fastest, of the same noise. Throws std::invalid_argument for parameters out of range,
+ * and where `size` is less than two texels for the scale's shortest wave.
  */
-std::vector<float> MakeScaleTiles(const SubbandParameters& parameters, int scale, int size);
+std::vector<float> MakeScaleTiles(const SubbandParameters& parameters, int scale, int size,
+  TexelKind kind = TexelKind::Values);
 
 /**
  * What the bands leave of the spectrum: N*N texels of two floats, what is finer than the finest

@@ -16,7 +16,7 @@ constexpr int MostTexels = 8192;
 
 int SizeOf(const SubbandVariant& variant, int scale)
 {
-  return variant.Cubic ? variant.TileSize : std::max(2 * variant.TileSize >> scale, 16);
+  return variant.Cubic ? variant.TileSize : std::max(variant.TileSize >> scale, 16);
 }
 
 int BorderOf(const SubbandVariant& variant)
@@ -122,7 +122,8 @@ const std::vector<float>& SubbandAtlas::GetScale(const Tile& tile, int size, int
     steerable::SubbandParameters pyramid = PyramidOf(this->Variant, tile.Scales);
     pyramid.Seed = this->Seed;
     pyramid.Realization = static_cast<std::uint32_t>(realization);
-    values = steerable::MakeScaleTiles(pyramid, tile.Scale, size);
+    values = steerable::MakeScaleTiles(pyramid, tile.Scale, size,
+      this->Variant.Cubic ? steerable::TexelKind::Values : steerable::TexelKind::Bilinear);
   }
   return values;
 }
@@ -130,9 +131,9 @@ const std::vector<float>& SubbandAtlas::GetScale(const Tile& tile, int size, int
 void SubbandAtlas::Update(const SubbandVariant& variant, std::uint32_t seed, int firstPlane)
 {
   const std::vector<double> madeKey = { double(variant.Orientations), double(variant.TileSize),
-    double(seed) };
+    double(seed), double(variant.Cubic) };
   std::vector<double> key = madeKey;
-  key.insert(key.end(), { double(variant.Cubic), double(variant.TextureScales), double(variant.PlaneScales),
+  key.insert(key.end(), { double(variant.TextureScales), double(variant.PlaneScales),
                           double(variant.Bytes), double(firstPlane) });
   if (key == this->Key)
   {

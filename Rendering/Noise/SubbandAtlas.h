@@ -3,9 +3,10 @@
 /**
  * The tiles of subband noise in one image of four components, for a texture (private).
  *
- * Bilinear lookups want 16 texels to a wave at the centre of a band for an error of 2 %. So scale j has
- * 2^(1-j) times the texels of the filter's tiles along each side, and all scales together 4/3 of the finest one's. Cubic lookups
- * read the filter's own tiles. Tiles for bilinear lookups have a border of one texel, which repeats the other side.
+ * Scale j has 2^-j times the texels of the filter's tiles along each side, 8 to a wave at the
+ * centre of a band, and all scales together 4/3 of the finest one's. Texels are such that bilinear
+ * lookups are closest to the noise, 4 % off. These tiles have a border of one texel, which repeats
+ * the other side. Cubic lookups read the filter's own tiles.
  */
 #ifndef SubbandAtlas_h
 #define SubbandAtlas_h

@@ -138,6 +138,7 @@ std::string MessageOf(void* text)
 vtkSubbandNoiseMapper::Internals::Internals()
 {
   this->Filter->WeightsOnlyOn();
+  this->Filter->SetTileSize(512);
   this->Filter->SetController(nullptr);
   this->Filter->KeepFieldsOff();
   vtkNew<vtkCallbackCommand> listener;

@@ -13,14 +13,17 @@
  * Input arrays are those of the filter, by the same numbers: 0 steers, 1 weights, 2 wavelength, 3 anisotropy. Without a
  * name nothing steers. Blocks that the filter refuses, and places where it has no weights, show their own colour.
  *
- * Graphics cards pass at least 60 values to a fragment, most 120 or more. Where the weights are more, as with 8 Orientations
- * steered on planar projections (120), the mapper takes 6, or 4: GetOrientationsInUse tells.
+ * Graphics cards pass at least 60 values to a fragment, most 120 or more. Where the weights are
+ * more, as with 8 Orientations steered on planar projections (120), the mapper takes 6, or 4:
+ * GetOrientationsInUse tells.
  *
- * Graphics memory: 16 bytes a vertex and 4 for each weight, of each direction and scale; with planar projections three
- * times as many and 16 bytes more; tiles once for each window, of the texture and of each of three planes 4/3 MB for each four
- * directions (TileSize 256, bilinear). Interpolation CUBIC takes 256 KB for each four directions and scale, as the
- * paper's: 262144 bytes with 4 Orientations and one scale. FloatTiles takes four times as much. Weights are uploaded when the input or
- * what they depend on changes: not for Octaves, Persistence, Function, AntiAlias, Seed and Phase.
+ * Graphics memory: 16 bytes a vertex and 4 for each weight, of each direction and scale; with planar
+ * projections three times as many and 16 bytes more. Tiles of the texture, and of each of three
+ * planes, take about 1.5 MB for each four directions; 0.4 MB with a TileSize of 256. With CUBIC
+ * interpolation they are as large for each scale: 262144 bytes for 4 Orientations, one scale and a
+ * TileSize of 256, as in the paper. FloatTiles takes four times as much. Weights are uploaded when
+ * the input or what they depend on changes: not for Octaves, Persistence, Function, AntiAlias, Seed
+ * and Phase.
  *
  * @sa
  * vtkPolyDataSubbandNoise
@@ -50,8 +53,11 @@ public:
   };
 
   ///@{
-  /// As in vtkPolyDataSubbandNoise, which documents them; a change uploads weights anew. The automatic Wavelength does not
-  /// depend on the points here.
+  /**
+   * As in vtkPolyDataSubbandNoise, which documents them; a change uploads weights anew. The automatic
+   * Wavelength does not depend on the points here, and TileSize is 512 by default, so that noise on
+   * planes repeats after 16 wavelengths.
+   */
   void SetWavelength(double wavelength);
   double GetWavelength();
   void SetAnisotropy(double anisotropy);
@@ -132,8 +138,8 @@ public:
 
   ///@{
   /**
-   * LINEAR, the default: one lookup for four bands, in tiles with twice the texels along each side, 2 % off; CUBIC: 16
-   * texels of the filter's own tiles, its value but for the bytes.
+   * LINEAR, the default: one lookup for four bands, 4 % off; CUBIC: 16 texels of the filter's own
+   * tiles, its value but for the bytes.
    */
   void SetInterpolation(int interpolation);
   int GetInterpolation();

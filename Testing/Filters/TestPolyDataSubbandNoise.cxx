@@ -2034,6 +2034,49 @@ TEST(PolyDataSubbandNoise, WeightsOnlyIsForThoseWhoLookTilesUp)
   }
 }
 
+TEST(PolyDataSubbandNoise, APartTakesWhatTheWholeAgreedOn)
+{
+  for (const bool texture : { true, false })
+  {
+    const auto whole = Sheet(33, Flat, CellKind::Triangles, 1.0, texture);
+    // The same cells but those of the upper half, so that bounds and sums are others.
+    const auto part = vtkSmartPointer<vtkPolyData>::New();
+    const auto lower = Sheet(33, [](double u, double v) { return Flat(u, std::min(v, 0.5)); },
+      CellKind::Triangles, 1.0, texture);
+    part->DeepCopy(lower);
+    vtkNew<vtkPolyDataSubbandNoise> of[3];
+    for (auto& filter : of)
+    {
+      filter->WeightsOnlyOn();
+      filter->SetParameterization(texture ? vtkPolyDataSubbandNoise::TEXTURE_COORDINATES
+                                          : vtkPolyDataSubbandNoise::TRIPLANAR);
+    }
+    auto quiet = Listen(of[1]);
+    auto quietToo = Listen(of[2]);
+    of[0]->SetInputData(whole);
+    of[0]->Update();
+    of[1]->SetInputData(part);
+    of[1]->Update();
+    of[2]->SetInputData(part);
+    of[2]->TakeAgreement(of[0]);
+    of[2]->Update();
+    EXPECT_NE(of[1]->GetResolvedWavelength(), of[0]->GetResolvedWavelength());
+    EXPECT_EQ(of[2]->GetResolvedWavelength(), of[0]->GetResolvedWavelength());
+    EXPECT_EQ(of[2]->GetTextureRepeats(), of[0]->GetTextureRepeats());
+    EXPECT_EQ(of[2]->GetPlaneRepeats(), of[0]->GetPlaneRepeats());
+    const auto all = Values(vtkPolyData::SafeDownCast(of[0]->GetOutputDataObject(0)), "SubbandWeights");
+    const auto some = Values(vtkPolyData::SafeDownCast(of[2]->GetOutputDataObject(0)), "SubbandWeights");
+    ASSERT_EQ(some.size(), all.size());
+    for (std::size_t i = 0; i < 15 * 33 * all.size() / (33 * 33); ++i)
+    {
+      EXPECT_EQ(some[i], all[i]);
+    }
+    of[2]->TakeAgreement(nullptr);
+    of[2]->Update();
+    EXPECT_EQ(of[2]->GetResolvedWavelength(), of[1]->GetResolvedWavelength());
+  }
+}
+
 TEST(PolyDataSubbandNoise, TriplanarNeedsNoTexture)
 {
   vtkNew<vtkSphereSource> sphere;

@@ -293,6 +293,42 @@ TEST(SubbandTiles, AScaleHasItsValuesWithAnyNumberOfTexels)
   EXPECT_THROW(MakeScaleTiles(p, -1, 64), std::invalid_argument);
 }
 
+// Texels for bilinear lookups against the noise itself, which four times as many texels have between them.
+TEST(SubbandTiles, BilinearTexelsHalveTheErrorOfValues)
+{
+  const SubbandParameters p = Pyramid(4, 2, 64, 0.125);
+  const int finer = 4;
+  for (int j = 0; j < p.Scales; ++j)
+  {
+    const int size = 64 >> j;
+    const std::vector<float> wanted = MakeScaleTiles(p, j, finer * size);
+    double errors[2] = { 0.0, 0.0 };
+    double power = 0.0;
+    for (const TexelKind kind : { TexelKind::Values, TexelKind::Bilinear })
+    {
+      SubbandTiles tiles;
+      tiles.Parameters = Pyramid(4, 1, size, 0.125);
+      tiles.Values = MakeScaleTiles(p, j, size, kind);
+      for (int y = 0; y < finer * size; ++y)
+      {
+        for (int x = 0; x < finer * size; ++x)
+        {
+          float bands[4];
+          SampleSubbands(tiles, TileLookup::Bilinear, double(x) / (finer * size), double(y) / (finer * size), bands);
+          for (int i = 0; i < 4; ++i)
+          {
+            const double value = wanted[4 * (y * finer * size + x) + i];
+            errors[kind == TexelKind::Bilinear] += std::pow(bands[i] - value, 2);
+            power += kind == TexelKind::Bilinear ? value * value : 0.0;
+          }
+        }
+      }
+    }
+    EXPECT_NEAR(std::sqrt(errors[0] / power), 0.068, 0.01);
+    EXPECT_LE(std::sqrt(errors[1] / power), 0.04);
+  }
+}
+
 TEST(SubbandTiles, FourBandsInEightBits)
 {
   const SubbandTiles tiles = MakeSubbandTiles(Pyramid(4, 1));

@@ -92,7 +92,7 @@ for name in names:
 last = picture(view, "options")
 options = dict(SubbandColorMode="Blend", SubbandIntensity=0.5, SubbandContrast=2.0, SubbandWavelength=2.0,
                SubbandVectors=["POINTS", "V"], SubbandAnisotropy=2.0, SubbandMethod="Heuristic", SubbandOrientations="4",
-               SubbandOctaves=2, SubbandPersistence=0.3, SubbandFunction="Turbulence", SubbandTileSize=512,
+               SubbandOctaves=2, SubbandPersistence=0.3, SubbandFunction="Turbulence", SubbandTileSize=128,
                SubbandInterpolation="Cubic", SubbandPhase=0.3, SubbandSeed=4, SubbandTimePeriod=3.0)
 for name, value in options.items():
     setattr(display, name, value)

@@ -216,8 +216,8 @@ TEST(SubbandNoiseMapper, BytesAndBilinearLookupsAreClose)
       const Setting set = [=](vtkPolyDataSubbandNoise* filter) { filter->SetOrientations(k); };
       // Bytes round a band by up to 1/64 of its deviation, in which weights may take differences of bands.
       EXPECT_LE(Compare(sheet, set, vtkSubbandNoiseMapper::CUBIC, false).Rms, 0.015) << k << texture;
-      EXPECT_LE(Compare(sheet, set, vtkSubbandNoiseMapper::LINEAR, true).Rms, 0.025) << k << texture;
-      EXPECT_LE(Compare(sheet, set, vtkSubbandNoiseMapper::LINEAR, false).Rms, 0.03) << k << texture;
+      EXPECT_LE(Compare(sheet, set, vtkSubbandNoiseMapper::LINEAR, true).Rms, 0.04) << k << texture;
+      EXPECT_LE(Compare(sheet, set, vtkSubbandNoiseMapper::LINEAR, false).Rms, 0.045) << k << texture;
     }
   }
 }
@@ -272,6 +272,7 @@ TEST(SubbandNoiseMapper, PhaseUploadsNothingOnceItMoves)
     scene.Mapper->SetOrientations(4);
     scene.Mapper->SetWavelength(30.0);
     scene.Mapper->SetFloatTiles(floats);
+    scene.Mapper->SetTileSize(128);
     scene.LookDown(110.0, 110.0, 256.0);
     scene.Render();
     const vtkIdType still = scene.Mapper->GetTileBytes();
@@ -313,6 +314,7 @@ TEST(SubbandNoiseMapper, BytesOfThePaper)
   Scene scene(sheet);
   scene.Mapper->SetInterpolation(vtkSubbandNoiseMapper::CUBIC);
   scene.Mapper->SetOrientations(4);
+  scene.Mapper->SetTileSize(256);
   scene.Render();
   // Four directions of 256 x 256 texels are 262144 bytes at each scale.
   EXPECT_GT(scene.Mapper->GetTileBytes(), 0);
@@ -320,7 +322,7 @@ TEST(SubbandNoiseMapper, BytesOfThePaper)
   EXPECT_LE(scene.Mapper->GetTileBytes(), 6 * 262144);
   scene.Mapper->SetInterpolation(vtkSubbandNoiseMapper::LINEAR);
   scene.Render();
-  EXPECT_LE(scene.Mapper->GetTileBytes(), 1.6 * 4 * 262144);
+  EXPECT_LE(scene.Mapper->GetTileBytes(), 1.6 * 262144);
   EXPECT_EQ(scene.Mapper->GetWeightBytes() % (16 * sheet->GetNumberOfPoints()), 0);
 }
 
@@ -351,13 +353,14 @@ TEST(SubbandNoiseMapper, BandsFadeByTheFootprintOfThePixel)
   EXPECT_NEAR(deviation(20.0, 2560.0, false), 1.0, 0.2); // two pixels to a wavelength
   EXPECT_LT(deviation(20.0, 2560.0, true), 0.1);
 
-  // Waves of 8 pixels along x and 0.8 along y: those along x are left, in which the power is 0.04 by the integral over
-  // directions of exp(-k^2), k in radians per pixel. A filter that knows no direction leaves none.
+  // Waves of 5.9 pixels along x, where the sheet is steep, and 0.8 along y: those along x are left, in which the power
+  // is 0.02 by the integral over directions of exp(-k^2), k in radians per pixel, so the deviation 0.14. A filter that
+  // knows no direction leaves none.
   scene.Actor->SetScale(1.0, 0.1, 1.0);
   scene.Actor->SetPosition(0.0, 100.0, 0.0);
   const double left = deviation(8.0, 256.0, true);
-  EXPECT_GT(left, 0.12);
-  EXPECT_LT(left, 0.35);
+  EXPECT_GT(left, 0.07);
+  EXPECT_LT(left, 0.28);
 }
 
 TEST(SubbandNoiseMapper, BlocksOfAllKinds)

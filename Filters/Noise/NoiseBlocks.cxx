@@ -31,8 +31,24 @@ void CopyBlocks(vtkDataObject* input, vtkDataObject* output,
   {
     vtkDataObject* leaf = iterator->GetCurrentDataObject();
     auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
-    composite->SetDataSet(iterator, copy);
     fill(copy, leaf);
+    composite->SetDataSet(iterator, copy); // filled: an AMR asks for its dimensions
+  }
+}
+
+//------------------------------------------------------------------------------
+void VisitBlocks(vtkDataObject* data, const std::function<void(vtkDataObject*)>& visit)
+{
+  auto* composite = vtkCompositeDataSet::SafeDownCast(data);
+  if (!composite)
+  {
+    visit(data);
+    return;
+  }
+  auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
+  for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
+  {
+    visit(iterator->GetCurrentDataObject());
   }
 }
 

@@ -34,6 +34,7 @@ SubbandPointCounts SubbandEvaluator::Evaluate(
     {
       this->Weights.Weigh(chunk.Planes[which], which, first);
     }
+    this->CopyWeights(chunk.Planes, first);
     this->SumOctaves(chunk.Planes, first, last - first);
     if (this->Distortion)
     {
@@ -48,10 +49,27 @@ SubbandPointCounts SubbandEvaluator::Evaluate(
 }
 
 //------------------------------------------------------------------------------
+void SubbandEvaluator::CopyWeights(
+  const std::vector<SubbandPlanePoints>& planes, vtkIdType first) const
+{
+  const vtkIdType tuple = this->Weights.GetFirstComponent(planes.size());
+  for (std::size_t which = 0; this->WeightArray && which < planes.size(); ++which)
+  {
+    const SubbandPlanePoints& plane = planes[which];
+    const int components = this->Weights.Lookups[which].Tiles->Components();
+    float* own = this->WeightArray + first * tuple + this->Weights.GetFirstComponent(which);
+    for (std::size_t n = 0; n < plane.Points.size(); ++n)
+    {
+      std::copy_n(
+        plane.Weights[0].data() + n * components, components, own + plane.Points[n] * tuple);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 void SubbandEvaluator::SumOctaves(
   const std::vector<SubbandPlanePoints>& planes, vtkIdType first, vtkIdType count) const
 {
-  const vtkIdType tuple = this->Weights.GetFirstComponent(planes.size());
   std::vector<double> uv;
   std::vector<float> values;
   std::array<float, SubbandChunkSize> sum{};
@@ -67,7 +85,6 @@ void SubbandEvaluator::SumOctaves(
     {
       const SubbandPlanePoints& plane = planes[which];
       const steerable::SubbandTiles& tiles = *this->Weights.Lookups[which].Tiles;
-      const int components = tiles.Components();
       const std::vector<float>& weights =
         plane.Weights[std::min<std::size_t>(octave, this->Weights.GetWeightedOctaves() - 1)];
       const std::size_t points = plane.Points.size();
@@ -83,11 +100,6 @@ void SubbandEvaluator::SumOctaves(
       for (std::size_t n = 0; n < points; ++n)
       {
         noise[plane.Points[n]] += values[n];
-        if (this->WeightArray && octave == 0)
-        {
-          std::copy_n(weights.data() + n * components, components,
-            this->WeightArray + (first + plane.Points[n]) * tuple + this->Weights.GetFirstComponent(which));
-        }
       }
     }
     for (vtkIdType n = 0; n < count; ++n)

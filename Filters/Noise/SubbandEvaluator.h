@@ -49,6 +49,7 @@ struct SubbandEvaluator
     const SubbandEvaluation& surface, std::size_t begin, std::size_t end) const;
 
 private:
+  void CopyWeights(const std::vector<SubbandPlanePoints>& planes, vtkIdType first) const;
   void SumOctaves(
     const std::vector<SubbandPlanePoints>& planes, vtkIdType first, vtkIdType count) const;
 };

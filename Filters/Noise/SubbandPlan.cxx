@@ -63,7 +63,7 @@ SubbandSurface& SubbandPlan::GetSurface(SubbandBlock& block) const
 void SubbandPlan::AgreeOnSurfaces(std::vector<SubbandBlock>& blocks)
 {
   this->AddBounds(blocks);
-  this->Attempt(
+  Attempt(this->Failure,
     [&]
     {
       for (SubbandBlock& block : blocks)
@@ -221,7 +221,7 @@ void SubbandPlan::AgreeOnTexture(std::vector<SubbandBlock>& blocks)
 void SubbandPlan::FindCharts(std::vector<SubbandBlock>& blocks)
 {
   double charts[3] = { 0.0, 0.0, 0.0 }; // area of small ones, that of all, and number of small ones
-  this->Attempt(
+  Attempt(this->Failure,
     [&]
     {
       for (SubbandBlock& block : blocks)
@@ -248,7 +248,7 @@ void SubbandPlan::FindCharts(std::vector<SubbandBlock>& blocks)
 //------------------------------------------------------------------------------
 void SubbandPlan::FindSeams(std::vector<SubbandBlock>& blocks)
 {
-  this->Attempt(
+  Attempt(this->Failure,
     [&]
     {
       for (SubbandBlock& block : blocks)

@@ -16,7 +16,6 @@
 
 #include <array>
 #include <cstdint>
-#include <exception>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -176,23 +175,6 @@ struct SubbandPlan
 
   /// The block's triangles, ready for GetPointWeights' FindPoints. Throws std::bad_alloc.
   SubbandSurface& PrepareSurface(SubbandBlock& block) const;
-
-  /// Does something that may fail on this rank alone, unless something has failed.
-  template <class Work>
-  void Attempt(Work&& work)
-  {
-    try
-    {
-      if (this->Failure.empty())
-      {
-        work();
-      }
-    }
-    catch (const std::exception& error)
-    {
-      this->Failure = error.what();
-    }
-  }
 
 private:
   bool BlendsSeams() const { return this->Properties.BlendSeams && !this->IsOfImage; }

@@ -364,7 +364,7 @@ void vtkPolyDataSubbandNoise::Execution::AgreeAcrossRanks(vtkImageData* image)
   noise::SubbandPlan& plan = this->Plan;
   if (plan.IsOfImage && !this->Blocks.empty())
   {
-    plan.Attempt([&] { plan.ImageTiles = &plan.Tiles->Image.Update(image); });
+    noise::Attempt(plan.Failure, [&] { plan.ImageTiles = &plan.Tiles->Image.Update(image); });
   }
   this->Self->Cache->Kept.Assign(this->Blocks,
     [&](const SubbandBlock& block)
@@ -652,14 +652,14 @@ int vtkPolyDataSubbandNoise::RequestData(
         << ", Persistence " << this->Persistence << "; give each a number.";
     return refuse(why.str());
   }
-  const auto drop = [this](Internals* cache)
-  {
-    if (!this->KeepFields)
+  const noise::AtEnd forget(
+    [this]
     {
-      cache->Forget();
-    }
-  };
-  const std::unique_ptr<Internals, decltype(drop)> dropUnlessKept(this->Cache, drop);
+      if (!this->KeepFields)
+      {
+        this->Cache->Forget();
+      }
+    });
 
   Execution run(this);
   run.CollectBlocks(input, output);

@@ -3,6 +3,7 @@
 #include "vtkSteerableNoiseMapper.h"
 
 #include "NoiseShader.h"
+#include "NoiseLengths.h"
 #include "SurfaceFields.h"
 
 #include "vtkActor.h"
@@ -705,7 +706,7 @@ vtkSteerableNoiseMapper::Internals::Extremes vtkSteerableNoiseMapper::Internals:
   vtkDataObject* input, vtkInformation* choice, vtkMultiProcessController* controller) const
 {
   Extremes extremes;
-  std::vector<vtkDataArray*> arrays;
+  std::vector<noise::LengthSource> arrays;
   ForEachPolyData(input,
     [&](vtkPolyData* data)
     {
@@ -720,7 +721,7 @@ vtkSteerableNoiseMapper::Internals::Extremes vtkSteerableNoiseMapper::Internals:
       }
       if (array)
       {
-        arrays.push_back(array);
+        arrays.push_back({ array });
       }
     });
   extremes.Lengths =

@@ -8,7 +8,7 @@
 #include "MetricTensor.h"
 #include "PatientThreads.h"
 #include "SteerableNoise.h"
-#include "SubbandTiles.h"
+#include "Subband/SubbandTiles.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/array.h>

@@ -7,7 +7,7 @@
 #ifndef SubbandLayout_h
 #define SubbandLayout_h
 
-#include "SubbandFilters.h"
+#include "Subband/SubbandFilters.h"
 
 namespace noise
 {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SubbandPoints.h"
 
+#include "Subband/SurfaceMetric.h"
 #include "SubbandSeams.h"
-#include "SurfaceMetric.h"
 
 #include "vtkDataArray.h"
 #include "vtkUnsignedCharArray.h"

@@ -11,11 +11,11 @@
 #ifndef SubbandPoints_h
 #define SubbandPoints_h
 
-#include "SubbandAnisotropy.h"
+#include "Subband/SubbandAnisotropy.h"
+#include "Subband/SubbandTiles.h"
+#include "Subband/SubbandWeights.h"
 #include "SubbandLayout.h"
 #include "SubbandSurface.h"
-#include "SubbandTiles.h"
-#include "SubbandWeights.h"
 
 #include "vtkType.h"
 

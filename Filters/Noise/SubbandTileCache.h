@@ -7,7 +7,7 @@
 #ifndef SubbandTileCache_h
 #define SubbandTileCache_h
 
-#include "SubbandTiles.h"
+#include "Subband/SubbandTiles.h"
 
 #include "vtkType.h"
 

@@ -1180,7 +1180,7 @@ TEST(SteerableNoise, HasTheSameStatisticsFarFromTheOrigin)
 
 TEST(SteerableNoise, VisitsTheCornersOfTheEllipsoidOnly)
 {
-  // The table of Documentation/noise-model.md, section 7.
+  // With the window, by Quality: lattice points of its cube that the ellipsoid holds, in the plane and in space.
   const std::map<int, std::array<double, 2>> table = { { 0, { 2.1, 3.1 } }, { 2, { 3.9, 5.5 } },
     { 4, { 5.0, 6.9 } }, { 8, { 6.7, 9.0 } } };
   for (const auto& [quality, expected] : table)

@@ -281,13 +281,13 @@ struct vtkSteerableNoiseFilter::Execution
     p.AnisotropicWeight = f.AnisotropicWeight;
     p.MetricInProjection = f.MetricInProjection;
     p.Strength = f.Strength;
-    p.StrengthBy = f.IsSteered() ? static_cast<steerable::StrengthMode>(f.StrengthMode)
+    p.StrengthMode = f.IsSteered() ? static_cast<steerable::StrengthMode>(f.StrengthMode)
                                  : steerable::StrengthMode::Constant;
     p.ReferenceMagnitude = f.ReferenceMagnitude;
     p.MaskThreshold = f.MaskThreshold;
     p.FollowCurvature = f.FollowCurvature;
-    p.Normalize = static_cast<steerable::Normalization>(f.Normalization);
-    p.Surflet = static_cast<steerable::Basis>(f.Basis);
+    p.Normalization = static_cast<steerable::Normalization>(f.Normalization);
+    p.Basis = static_cast<steerable::Basis>(f.Basis);
     p.Density = f.Density;
     p.Motion = f.Animate || f.Phase != 0.0 || f.TimePeriod > 0.0;
     p.Phase = f.Phase + (f.TimePeriod > 0.0 ? time / f.TimePeriod : 0.0);
@@ -296,10 +296,10 @@ struct vtkSteerableNoiseFilter::Execution
     p.Lacunarity = f.Lacunarity;
     p.Gain = f.Gain;
     p.Turbulence = f.Turbulence;
-    p.Interpolant = static_cast<steerable::Fade>(f.Fade);
-    p.Window = static_cast<steerable::Falloff>(f.Falloff);
-    p.Grid = static_cast<steerable::Lattice>(f.Lattice);
-    p.Gradients = static_cast<steerable::GradientSet>(f.GradientSet);
+    p.Fade = static_cast<steerable::Fade>(f.Fade);
+    p.Falloff = static_cast<steerable::Falloff>(f.Falloff);
+    p.Lattice = static_cast<steerable::Lattice>(f.Lattice);
+    p.GradientSet = static_cast<steerable::GradientSet>(f.GradientSet);
     p.Period = { f.Period[0], f.Period[1], f.Period[2] };
     p.Seed = static_cast<std::uint32_t>(f.Seed);
     if (f.Model == MODEL_PERLIN)
@@ -308,7 +308,7 @@ struct vtkSteerableNoiseFilter::Execution
       p.Quality = 0;
       p.AnisotropicWeight = false;
       p.MetricInProjection = false;
-      p.Normalize = steerable::Normalization::None;
+      p.Normalization = steerable::Normalization::None;
     }
     return p;
   }

@@ -92,22 +92,49 @@ private:
       static_cast<std::int64_t>(row % this->Shape[1]) * this->Stride[c][1];
   }
 
+  /// How many components lie side by side, with nothing else along a row; 0 if they do not.
+  template <typename T>
+  std::int64_t CountTogether() const
+  {
+    std::int64_t count = 1;
+    const auto* first = static_cast<const T*>(this->Data[0]);
+    while (count < 3 && this->Data[count] == first + count)
+    {
+      ++count;
+    }
+    bool together = count == 3 || this->Data[count] == &Zero;
+    for (std::int64_t c = 0; c < count; ++c)
+    {
+      together = together && this->Stride[c][2] == count && this->Stride[c][1] == this->Stride[0][1] &&
+        this->Stride[c][0] == this->Stride[0][0];
+    }
+    return together ? count : 0;
+  }
+
   template <typename T>
   bool AnyFromOf(std::size_t begin, std::size_t end, T least) const
   {
     bool any = false;
+    const auto nx = static_cast<std::int64_t>(this->Shape[2]);
+    // Without a branch, which the compiler turns into SIMD.
+    const auto look = [&](const T* values, std::int64_t size, std::int64_t step)
+    {
+      for (std::int64_t i = 0; i < size; ++i)
+      {
+        any |= std::abs(values[i * step]) >= least;
+      }
+    };
+    const std::int64_t together = this->CountTogether<T>();
     for (std::size_t row = begin; row < end && !any; ++row)
     {
-      for (int c = 0; c < 3; ++c)
+      if (together > 0)
       {
-        const T* values = this->GetRow<T>(c, row);
+        look(this->GetRow<T>(0, row), together * nx, 1);
+      }
+      for (int c = 0; c < 3 && together == 0; ++c)
+      {
         const std::int64_t step = this->Stride[c][2];
-        const std::int64_t size = step ? static_cast<std::int64_t>(this->Shape[2]) : 1;
-        // Without a branch, which the compiler turns into SIMD.
-        for (std::int64_t i = 0; i < size; ++i)
-        {
-          any |= std::abs(values[i * step]) >= least;
-        }
+        look(this->GetRow<T>(c, row), step ? nx : 1, step);
       }
     }
     return any;
@@ -170,28 +197,39 @@ public:
   const float* Read(std::size_t first, std::size_t count, float* scratch) const override
   {
     const bool limited = std::isfinite(this->Limit);
-    this->Tuples.ForEach(first, count,
-      [&](std::size_t i, const double (&vector)[3])
-      {
-        float* to = scratch + 3 * (i - first);
-        // Short vectors and long ones are scaled; these need not be.
-        const double sum = std::abs(vector[0]) + std::abs(vector[1]) + std::abs(vector[2]);
-        if (limited && LengthOf(vector) > this->Limit)
+    // Short vectors and long ones are scaled; hardly any data have them.
+    bool plain = !limited;
+    if (plain)
+    {
+      this->Tuples.ForEach(first, count,
+        [&](std::size_t i, const double (&vector)[3])
         {
-          std::fill_n(to, 3, std::numeric_limits<float>::quiet_NaN());
-        }
-        else if (sum < steerable::LongestTuple && sum > 4.0 / steerable::LongestTuple)
-        {
+          const double sum = std::abs(vector[0]) + std::abs(vector[1]) + std::abs(vector[2]);
+          // Without a branch, as nearly all data pass.
+          plain &= (sum == 0.0) |
+            ((sum < steerable::LongestTuple) & (sum > 4.0 / steerable::LongestTuple));
           for (int c = 0; c < 3; ++c)
           {
-            to[c] = static_cast<float>(vector[c]);
+            scratch[3 * (i - first) + c] = static_cast<float>(vector[c]);
           }
-        }
-        else
+        });
+    }
+    if (!plain)
+    {
+      this->Tuples.ForEach(first, count,
+        [&](std::size_t i, const double (&vector)[3])
         {
-          steerable::ToFloats(vector, 3, to);
-        }
-      });
+          float* to = scratch + 3 * (i - first);
+          if (limited && LengthOf(vector) > this->Limit)
+          {
+            std::fill_n(to, 3, std::numeric_limits<float>::quiet_NaN());
+          }
+          else
+          {
+            steerable::ToFloats(vector, 3, to);
+          }
+        });
+    }
     return scratch;
   }
 

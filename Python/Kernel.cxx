@@ -34,6 +34,8 @@ namespace
 using Output = nb::ndarray<float, nb::numpy, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Metrics = nb::ndarray<double, nb::numpy, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 constexpr std::size_t SamplesAtATime = 1u << 14;
+/// Of images more: what is next to a part is read for its curvature too.
+constexpr std::size_t ImageSamplesAtATime = 1u << 16;
 
 /// Samples without a direction, stagnant ones, and those that were too long.
 using Counts = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t>;
@@ -98,7 +100,8 @@ Counts EvaluateImage(const steerable::NoiseParameters& parameters, int dimension
   const std::size_t row = vectors[0].shape(2);
   const nb::gil_scoped_release noGil;
   Blanks blanks{ tuples, parameters.MaskThreshold, limit, blank };
-  ForEachPart(grid.GetNumberOfRows(), SamplesAtATime / row + 1, threads,
+  constexpr std::size_t together = steerable::ImageGrid::RowsTogether;
+  ForEachPart(grid.GetNumberOfRows(), (ImageSamplesAtATime / row / together + 1) * together, threads,
     [&](std::size_t begin, std::size_t end) {
       blanks.Apply(
         kernel.EvaluateImage(grid, field, begin, end, noise), begin * row, end * row, noise);

@@ -87,6 +87,8 @@ struct ImageGrid
    */
   int CurvatureStride = 1;
   static constexpr int MaximumStride = 16;
+  /// Rows that go through the stages together: parts of an image cost least in multiples of these.
+  static constexpr std::size_t RowsTogether = 8;
 
   std::size_t GetNumberOfRows() const
   {

@@ -6,20 +6,15 @@
 #ifndef CellSums_h
 #define CellSums_h
 
-#include "vtkCellType.h"
 #include "vtkDataSet.h"
 #include "vtkFloatArray.h"
-#include "vtkGenericCell.h"
-#include "vtkIdList.h"
-#include "vtkNew.h"
 #include "vtkSMPTools.h"
-#include "vtkUnsignedCharArray.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cstdint>
+#include <cmath>
 #include <cstdlib>
 #include <vector>
 
@@ -27,59 +22,6 @@ namespace noise
 {
 /// For PointSums of unit vectors: a millionth, and room for two thousand that are alike.
 constexpr double DirectionSteps = 1 << 20;
-
-/// Dimensions of the types of cell that a dataset has. From now on threads may ask it for cells.
-class CellDimensions
-{
-public:
-  explicit CellDimensions(vtkDataSet* dataset)
-    : Dimensions(VTK_NUMBER_OF_CELL_TYPES, 0)
-    , Curved(VTK_NUMBER_OF_CELL_TYPES, false)
-  {
-    // VTK makes what it needs for these when it is first called.
-    if (dataset->GetNumberOfCells() > 0)
-    {
-      vtkNew<vtkIdList> ids;
-      dataset->GetCellPoints(0, ids);
-    }
-    std::vector<bool> known(VTK_NUMBER_OF_CELL_TYPES, false);
-    vtkNew<vtkGenericCell> cell;
-    const auto add = [&](int type)
-    {
-      if (!known.at(type))
-      {
-        known[type] = true;
-        cell->SetCellType(type);
-        this->Dimensions[type] = cell->GetCellDimension();
-        this->Curved[type] = !cell->IsLinear();
-      }
-    };
-    auto* grid = vtkUnstructuredGrid::SafeDownCast(dataset);
-    if (vtkUnsignedCharArray* types = grid ? grid->GetCellTypesArray() : nullptr)
-    {
-      const unsigned char* begin = types->GetPointer(0);
-      std::for_each(begin, begin + types->GetNumberOfValues(), add);
-      return;
-    }
-    for (vtkIdType id = 0; id < dataset->GetNumberOfCells(); ++id)
-    {
-      add(dataset->GetCellType(id));
-    }
-  }
-
-  int Get(int type) const { return this->Dimensions[type]; }
-  /// Quadratic cells and such of higher order.
-  bool IsCurved(int type) const { return this->Curved[type]; }
-  bool Has(int dimension) const
-  {
-    return std::find(this->Dimensions.begin(), this->Dimensions.end(), dimension) !=
-      this->Dimensions.end();
-  }
-
-private:
-  std::vector<int> Dimensions;
-  std::vector<bool> Curved;
-};
 
 /**
  * Means over the cells of each point, as far as they go into 2^31 steps together. Sums are exact, so that
@@ -113,7 +55,7 @@ public:
   {
     constexpr double most = INT32_MAX;
     const Eigen::Array3d steps = value.array() * this->StepsPerUnit;
-    if (steps.allFinite())
+    if (std::isfinite(steps.sum()))
     {
       // Rounds to the nearest in one instruction, as the conversion of something larger than 2^52 does.
       constexpr double rounding = 6755399441055744.0;
@@ -123,12 +65,12 @@ public:
   }
 
   /**
-   * `getShares(cell, ids, shares)` appends those of a cell, `ids` is a list for its own use; it runs in
-   * threads. `lines`: v and -v are the same, so a sum takes them to its own side, which their order decides
+   * `makeGetShares()` makes, for one of the threads and with room of its own, the function
+   * getShares(cell, shares) that appends those of a cell. `lines`: v and -v are the same, so a sum takes them to its own side, which their order decides
    * where they are across one another.
    */
-  template <class GetShares>
-  void AddCells(bool lines, GetShares&& getShares)
+  template <class MakeGetShares>
+  void AddCells(bool lines, MakeGetShares&& makeGetShares)
   {
     // So many that threads are worth it, so few that their shares take little memory.
     constexpr vtkIdType chunkSize = 128;
@@ -145,14 +87,14 @@ public:
       vtkSMPTools::For(0, used, 1,
         [&](vtkIdType begin, vtkIdType stop)
         {
-          vtkNew<vtkIdList> ids;
+          auto getShares = makeGetShares();
           for (vtkIdType chunk = begin; chunk < stop; ++chunk)
           {
             chunks[chunk].clear();
             const vtkIdType last = std::min(end, first + (chunk + 1) * chunkSize);
             for (vtkIdType cell = first + chunk * chunkSize; cell < last; ++cell)
             {
-              getShares(cell, ids.Get(), chunks[chunk]);
+              getShares(cell, chunks[chunk]);
             }
           }
         });

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <utility>
 
 namespace noise
@@ -75,20 +76,29 @@ CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hid
         std::uint64_t hash = 0x9E3779B97F4A7C15u;
         for (const double value : place)
         {
-          hash = (hash ^ static_cast<std::uint64_t>(std::llround(value / unit))) * 0xBF58476D1CE4E5B9u;
+          // Units, in the lowest bits of a number that has no room for parts of them.
+          const double units = value / unit + 6755399441055744.0;
+          std::uint64_t bits;
+          std::memcpy(&bits, &units, sizeof(bits));
+          hash = (hash ^ bits) * 0xBF58476D1CE4E5B9u;
           hash ^= hash >> 31;
         }
         hashes[static_cast<std::size_t>(point)] = std::max<std::uint64_t>(hash, 1);
       }
     });
-  // Most points are alone. Eight bits for each tell nearly all of them, and the rest is sorted.
-  std::vector<bool> once(8 * static_cast<std::size_t>(count) + 1, false);
-  std::vector<bool> twice(once.size(), false);
+  // Most points are alone. Eight bits or more for each tell nearly all of them, and the rest is sorted.
+  std::size_t size = 64;
+  while (size < 8 * static_cast<std::size_t>(count))
+  {
+    size *= 2;
+  }
+  std::vector<bool> once(size, false);
+  std::vector<bool> twice(size, false);
   for (const std::uint64_t hash : hashes)
   {
     if (hash)
     {
-      const std::size_t bit = hash % once.size();
+      const std::size_t bit = hash & (size - 1);
       twice[bit] = twice[bit] || once[bit];
       once[bit] = true;
     }
@@ -97,7 +107,7 @@ CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hid
   for (vtkIdType point = 0; point < count; ++point)
   {
     const std::uint64_t hash = hashes[static_cast<std::size_t>(point)];
-    if (hash && twice[hash % once.size()])
+    if (hash && twice[hash & (size - 1)])
     {
       order.emplace_back(hash, point);
     }

@@ -3,6 +3,7 @@
 #include "NoiseCurvature.h"
 
 #include "CellSums.h"
+#include "DatasetCells.h"
 #include "NoiseCopies.h"
 #include "NoiseThreads.h"
 #include "PointPlaces.h"
@@ -29,6 +30,13 @@ struct CellPoints
   std::vector<vtkIdType> Ids;
   std::vector<Vector3d> Places;
   std::vector<Vector3d> Directions;
+
+  void Resize(std::size_t count)
+  {
+    this->Ids.resize(count);
+    this->Places.resize(count);
+    this->Directions.resize(count);
+  }
 };
 
 /// Unit vector, or 0 if there is none.
@@ -38,7 +46,7 @@ Vector3d GetDirection(const steerable::TupleReader<float>& vectors, vtkIdType sa
   const float* vector = vectors.Read(static_cast<std::size_t>(sample), 1, scratch);
   const Vector3d v = Eigen::Map<const Eigen::Vector3f>(vector).cast<double>();
   const double length = v.norm();
-  return std::isfinite(length) && length > 0.0 ? Vector3d(v / length) : Vector3d::Zero();
+  return std::isfinite(length) && length > 0.0 ? Vector3d(v * (1.0 / length)) : Vector3d::Zero();
 }
 
 /// The matrix J that fits du ≈ J dx best, in directions in which there are dx.
@@ -111,17 +119,73 @@ private:
   Matrix3d Products = Matrix3d::Zero();
 };
 
-/// Of a cell that has no more points than its dimension needs: the gradient that goes through all of them. False where
-/// they are too close to a line or a plane.
-bool GetLinearGradient(
-  const Vector3d* places, const Vector3d* directions, int dimension, Matrix3d& gradient)
+/// Differences of place and direction between the two ends of a cell along each of its axes.
+struct CellAxes
+{
+  Vector3d Places[3];
+  Vector3d Directions[3];
+};
+
+/**
+ * Of `count` points of a cell of this type from `first` on: from one corner of a simplex to the others; of a quadrangle and a
+ * hexahedron the means of the sides along each axis, which with parallel sides is what fits them best. False for others.
+ */
+bool GetAxes(const CellPoints& cell, std::size_t first, std::size_t count, int type, int dimension,
+  CellAxes& axes)
+{
+  const auto set = [&](auto&& difference)
+  {
+    difference(cell.Places.data() + first, axes.Places);
+    difference(cell.Directions.data() + first, axes.Directions);
+    return true;
+  };
+  if (dimension > 1 && count == static_cast<std::size_t>(dimension) + 1)
+  {
+    return set(
+      [&](const Vector3d* at, Vector3d* axis)
+      {
+        for (int i = 0; i < dimension; ++i)
+        {
+          axis[i] = at[i + 1] - at[0];
+        }
+      });
+  }
+  // The corners of pixels and voxels are in the order of an image, those of others go round.
+  const bool image = type == VTK_PIXEL || type == VTK_VOXEL;
+  if ((type == VTK_QUAD || type == VTK_PIXEL) && count == 4)
+  {
+    return set(
+      [&](const Vector3d* at, Vector3d* axis)
+      {
+        const Vector3d diagonals[2] = { at[2 + image] - at[0], at[1] - at[3 - image] };
+        axis[0] = 0.5 * (diagonals[0] + diagonals[1]);
+        axis[1] = 0.5 * (diagonals[0] - diagonals[1]);
+      });
+  }
+  if ((type == VTK_HEXAHEDRON || type == VTK_VOXEL) && count == 8)
+  {
+    return set(
+      [&](const Vector3d* at, Vector3d* axis)
+      {
+        const Vector3d diagonals[4] = { at[6 + image] - at[0], at[7 - image] - at[1],
+          at[5] - at[3 - image], at[4] - at[2 + image] };
+        const Vector3d even = diagonals[0] - diagonals[3];
+        const Vector3d odd = diagonals[2] - diagonals[1];
+        axis[0] = 0.25 * (even + odd);
+        axis[1] = 0.25 * (even - odd);
+        axis[2] = 0.25 * (diagonals[0] + diagonals[1] + diagonals[2] + diagonals[3]);
+      });
+  }
+  return false;
+}
+
+/// The gradient that has these differences. False where they are too close to a line or a plane.
+bool GetGradientOfAxes(const CellAxes& axes, int dimension, Matrix3d& gradient)
 {
   // As GradientFit: a millionth of the longest is still a distance.
   constexpr double thinnest = 1e-12;
-  const Vector3d a = places[1] - places[0];
-  const Vector3d b = places[2] - places[0];
-  const Vector3d du = directions[1] - directions[0];
-  const Vector3d dv = directions[2] - directions[0];
+  const auto& [a, b, c] = axes.Places;
+  const auto& [du, dv, dw] = axes.Directions;
   const Vector3d normal = a.cross(b);
   if (dimension == 2)
   {
@@ -131,12 +195,10 @@ bool GetLinearGradient(
     {
       return false;
     }
-    // The gradients of the two coordinates that are 1 at one corner and 0 at the others.
+    // The gradients of the two coordinates that go from 0 to 1 along one axis.
     gradient = (du * b.cross(normal).transpose() + dv * normal.cross(a).transpose()) / squared;
     return true;
   }
-  const Vector3d c = places[3] - places[0];
-  const Vector3d dw = directions[3] - directions[0];
   const double volume = normal.dot(c);
   const double longest = std::max({ a.squaredNorm(), b.squaredNorm(), c.squaredNorm() });
   if (!(volume * volume > thinnest * longest * longest * longest) || !std::isfinite(volume * volume))
@@ -147,12 +209,13 @@ bool GetLinearGradient(
   return true;
 }
 
-/// Gradient of the points [first, first + count) of a cell.
-Matrix3d GetGradient(const CellPoints& cell, std::size_t first, std::size_t count, int dimension)
+/// Gradient of the points [first, first + count) of a cell of this type.
+Matrix3d GetGradient(
+  const CellPoints& cell, std::size_t first, std::size_t count, int type, int dimension)
 {
+  CellAxes axes;
   Matrix3d gradient;
-  if (dimension > 1 && count == static_cast<std::size_t>(dimension) + 1 &&
-    GetLinearGradient(cell.Places.data() + first, cell.Directions.data() + first, dimension, gradient))
+  if (GetAxes(cell, first, count, type, dimension, axes) && GetGradientOfAxes(axes, dimension, gradient))
   {
     return gradient;
   }
@@ -180,22 +243,22 @@ std::size_t GetPartSize(int cellType)
 }
 
 /**
- * Reads the points of a cell and the directions there, on the side of `side` or, if that is 0, of the
+ * Sets the points of a cell and the directions there, on the side of `side` or, if that is 0, of the
  * first; `getDirection(point)` gives 0 where there is none. Such points are left out, or `keepAll`.
  */
 template <class Get>
-void ReadCell(vtkDataSet* dataset, const PointPlaces& places, vtkIdType id, Vector3d side, bool keepAll,
-  vtkIdList* ids, CellPoints& cell, Get&& getDirection)
+void SetPoints(const CellIds& ids, const PointPlaces& places, Vector3d side, bool keepAll,
+  CellPoints& cell, Get&& getDirection)
 {
-  cell.Ids.clear();
-  cell.Places.clear();
-  cell.Directions.clear();
-  dataset->GetCellPoints(id, ids);
-  for (const vtkIdType point : *ids)
+  const auto size = static_cast<std::size_t>(ids.size());
+  cell.Resize(size);
+  std::size_t count = 0;
+  for (const vtkIdType point : ids)
   {
     Vector3d u = getDirection(point);
     const Vector3d place = places(point);
-    if (u.isZero(0.0) || !place.allFinite())
+    // What is no place, or no direction, which are unit vectors, in the fewest steps.
+    if (!(u.squaredNorm() > 0.0) || !std::isfinite(place.sum()))
     {
       if (!keepAll)
       {
@@ -203,11 +266,13 @@ void ReadCell(vtkDataSet* dataset, const PointPlaces& places, vtkIdType id, Vect
       }
       u.setZero();
     }
-    side = side.isZero(0.0) ? u : side;
-    cell.Ids.push_back(point);
-    cell.Places.push_back(place);
-    cell.Directions.push_back(u.dot(side) < 0.0 ? Vector3d(-u) : u);
+    side = side.squaredNorm() > 0.0 ? side : u;
+    cell.Ids[count] = point;
+    cell.Places[count] = place;
+    cell.Directions[count] = u.dot(side) < 0.0 ? Vector3d(-u) : u;
+    ++count;
   }
+  cell.Resize(count);
 }
 
 /// Of points, from the cells around them.
@@ -215,39 +280,43 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden,
   const CoincidentPoints& copies, double cellSize)
 {
-  const CellDimensions dimensions(dataset);
+  const DatasetCells cells(dataset);
   const PointPlaces places(dataset);
   auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfPoints());
   // The noise takes bends up to 1 / cellSize: room for 127 cells of such, and finer than it sees.
   PointSums sums(dataset, curvature, cellSize * (1 << 24));
   sums.AddCells(false,
-    [&](vtkIdType id, vtkIdList* ids, PointSums::Shares& shares)
+    [&]
     {
-      const int type = dataset->GetCellType(id);
-      const int dimension = dimensions.Get(type);
-      if (dimension == 0 || hidden.HasCell(id))
+      return [&, read = DatasetCells::Reader(cells), cell = CellPoints()](
+               vtkIdType id, PointSums::Shares& shares) mutable
       {
-        return;
-      }
-      thread_local CellPoints cell;
-      const std::size_t part = GetPartSize(type);
-      ReadCell(dataset, places, id, Vector3d::Zero(), part > 0, ids, cell,
-        [&](vtkIdType point) { return GetDirection(vectors, point); });
-      const std::size_t size = part > 0 ? part : std::max<std::size_t>(cell.Ids.size(), 2);
-      for (std::size_t first = 0; first + size <= cell.Ids.size(); ++first)
-      {
-        const auto begin = cell.Directions.begin() + static_cast<std::ptrdiff_t>(first);
-        if (std::any_of(begin, begin + static_cast<std::ptrdiff_t>(size),
+        const int type = cells.GetType(id);
+        const int dimension = cells.GetDimension(type);
+        if (dimension == 0 || hidden.HasCell(id))
+        {
+          return;
+        }
+        const std::size_t part = GetPartSize(type);
+        SetPoints(read(id), places, Vector3d::Zero(), part > 0, cell,
+          [&](vtkIdType point) { return GetDirection(vectors, point); });
+        const std::size_t size = part > 0 ? part : std::max<std::size_t>(cell.Ids.size(), 2);
+        for (std::size_t first = 0; first + size <= cell.Ids.size(); ++first)
+        {
+          const auto begin = cell.Directions.begin() + static_cast<std::ptrdiff_t>(first);
+          if (part > 0 &&
+            std::any_of(begin, begin + static_cast<std::ptrdiff_t>(size),
               [](const Vector3d& u) { return u.isZero(0.0); }))
-        {
-          continue;
+          {
+            continue;
+          }
+          const Matrix3d gradient = GetGradient(cell, first, size, type, dimension);
+          for (std::size_t i = first; i < first + size; ++i)
+          {
+            sums.Append(shares, cell.Ids[i], gradient * cell.Directions[i]);
+          }
         }
-        const Matrix3d gradient = GetGradient(cell, first, size, dimension);
-        for (std::size_t i = first; i < first + size; ++i)
-        {
-          sums.Append(shares, cell.Ids[i], gradient * cell.Directions[i]);
-        }
-      }
+      };
     });
   sums.Finish();
   copies.Share(curvature, cellSize * (1 << 24), false, 0.0);
@@ -259,19 +328,24 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden,
   const CoincidentPoints& copies)
 {
-  const CellDimensions dimensions(dataset);
+  const DatasetCells cells(dataset);
   const PointPlaces places(dataset);
   auto points = NewOutputArray("Directions", 3, dataset->GetNumberOfPoints());
   PointSums sums(dataset, points, DirectionSteps);
   sums.AddCells(true,
-    [&](vtkIdType id, vtkIdList* ids, PointSums::Shares& shares)
+    [&]
     {
-      const Vector3d u = GetDirection(vectors, id);
-      dataset->GetCellPoints(id, ids);
-      for (vtkIdType i = 0; i < ids->GetNumberOfIds() && !u.isZero(0.0); ++i)
+      return [&, read = DatasetCells::Reader(cells)](vtkIdType id, PointSums::Shares& shares) mutable
       {
-        sums.Append(shares, ids->GetId(i), u);
-      }
+        const Vector3d u = GetDirection(vectors, id);
+        if (!u.isZero(0.0))
+        {
+          for (const vtkIdType point : read(id))
+          {
+            sums.Append(shares, point, u);
+          }
+        }
+      };
     });
   sums.Finish();
   copies.Share(points, DirectionSteps, true, 0.0);
@@ -279,7 +353,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
   vtkSMPTools::For(0, dataset->GetNumberOfCells(), 1024,
     [&](vtkIdType begin, vtkIdType end)
     {
-      vtkNew<vtkIdList> ids;
+      DatasetCells::Reader read(cells);
       CellPoints cell;
       for (vtkIdType id = begin; id < end; ++id)
       {
@@ -287,13 +361,13 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
         Vector3d result = Vector3d::Zero();
         if (!u.isZero(0.0))
         {
-          ReadCell(dataset, places, id, u, false, ids, cell,
+          SetPoints(read(id), places, u, false, cell,
             [&](vtkIdType point) -> Vector3d {
               return Eigen::Map<const Eigen::Vector3f>(points->GetPointer(3 * point))
                 .cast<double>();
             });
-          const int dimension = dimensions.Get(dataset->GetCellType(id));
-          result = GetGradient(cell, 0, cell.Ids.size(), dimension) * u;
+          const int type = cells.GetType(id);
+          result = GetGradient(cell, 0, cell.Ids.size(), type, cells.GetDimension(type)) * u;
         }
         Eigen::Map<Eigen::Vector3f>(curvature->GetPointer(3 * id)) = result.cast<float>();
       }

@@ -3,6 +3,7 @@
 #include "NoiseSamples.h"
 
 #include "CellSums.h"
+#include "DatasetCells.h"
 #include "MetricTensor.h"
 #include "NoiseCells.h"
 #include "NoiseCopies.h"
@@ -44,7 +45,7 @@ namespace noise
 namespace
 {
 /// Unit normal of the plane through points (a strip's first three, a curved cell's corners), 0 if there is none.
-Eigen::Vector3d GetNormal(const PointPlaces& places, int cellType, vtkIdList* ids)
+Eigen::Vector3d GetNormal(const PointPlaces& places, int cellType, const CellIds& ids)
 {
   const auto corners = [&]() -> vtkIdType
   {
@@ -63,15 +64,15 @@ Eigen::Vector3d GetNormal(const PointPlaces& places, int cellType, vtkIdList* id
       case VTK_BEZIER_QUADRILATERAL:
         return 4;
       case VTK_QUADRATIC_POLYGON: // its corners, then the middles of its sides
-        return ids->GetNumberOfIds() / 2;
+        return ids.size() / 2;
       default:
-        return ids->GetNumberOfIds();
+        return ids.size();
     }
   };
-  const vtkIdType count = std::min(corners(), ids->GetNumberOfIds());
+  const vtkIdType count = std::min(corners(), ids.size());
   // Newell's sum over the edges; a pixel's points are in the order of an image.
   const auto getId = [&](vtkIdType i)
-  { return ids->GetId(cellType == VTK_PIXEL && i >= 2 ? 5 - i : i); };
+  { return ids[cellType == VTK_PIXEL && i >= 2 ? 5 - i : i]; };
   Eigen::Vector3d origin;
   Eigen::Vector3d before;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -268,8 +269,8 @@ void Samples::SetPoints()
 
 vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
 {
-  const CellDimensions dimensions(this->DataSet);
-  if (!dimensions.Has(2))
+  const DatasetCells cells(this->DataSet);
+  if (!cells.Has(2))
   {
     return nullptr;
   }
@@ -286,17 +287,17 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
   vtkDataArray* own = attributes->GetNormals();
   const auto isSurface = [&](vtkIdType cell)
   {
-    return dimensions.Get(this->DataSet->GetCellType(cell)) == 2 &&
+    return cells.GetDimension(cells.GetType(cell)) == 2 &&
       (this->Cells || !this->Hidden.HasCell(cell));
   };
 
   // A polygon's sides bend, but VTK takes it for flat inside.
   const auto isCurved = [&](int type)
-  { return dimensions.IsCurved(type) && type != VTK_QUADRATIC_POLYGON; };
+  { return cells.IsCurved(type) && type != VTK_QUADRATIC_POLYGON; };
   vtkSMPThreadLocal<std::shared_ptr<CurvedCell>> curvedCells;
   const auto getCurved = [&](vtkIdType cell) -> CurvedCell*
   {
-    if (!isCurved(this->DataSet->GetCellType(cell)))
+    if (!isCurved(cells.GetType(cell)))
     {
       return nullptr;
     }
@@ -310,7 +311,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
     vtkSMPTools::For(0, this->DataSet->GetNumberOfCells(), 1024,
       [&](vtkIdType begin, vtkIdType end)
       {
-        vtkNew<vtkIdList> ids;
+        DatasetCells::Reader read(cells);
         for (vtkIdType cell = begin; cell < end; ++cell)
         {
           Eigen::Vector3d normal = Eigen::Vector3d::Zero();
@@ -322,8 +323,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
             }
             if (normal.isZero(0.0))
             {
-              this->DataSet->GetCellPoints(cell, ids);
-              normal = GetNormal(places, this->DataSet->GetCellType(cell), ids);
+              normal = GetNormal(places, cells.GetType(cell), read(cell));
             }
           }
           if (own && !normal.isZero(0.0))
@@ -339,24 +339,27 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
   PointSums sums(this->DataSet, normals, DirectionSteps);
   // Neighbours that face the other way count all the same: the metric has no sides.
   sums.AddCells(true,
-    [&](vtkIdType cell, vtkIdList* ids, PointSums::Shares& shares)
+    [&]
     {
-      if (isSurface(cell))
+      return [&, read = DatasetCells::Reader(cells)](vtkIdType cell, PointSums::Shares& shares) mutable
       {
-        this->DataSet->GetCellPoints(cell, ids);
-        const Eigen::Vector3d flat =
-          GetNormal(places, this->DataSet->GetCellType(cell), ids);
+        if (!isSurface(cell))
+        {
+          return;
+        }
+        const CellIds ids = read(cell);
+        const Eigen::Vector3d flat = GetNormal(places, cells.GetType(cell), ids);
         CurvedCell* curved = getCurved(cell);
-        for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+        for (vtkIdType i = 0; i < ids.size(); ++i)
         {
           Eigen::Vector3d normal = curved ? curved->GetNormal(static_cast<int>(i)) : flat;
           normal = normal.isZero(0.0) ? flat : normal;
           if (!normal.isZero(0.0))
           {
-            sums.Append(shares, ids->GetId(i), normal);
+            sums.Append(shares, ids[i], normal);
           }
         }
-      }
+      };
     });
   sums.Finish();
   for (vtkIdType point = 0; own && point < normals->GetNumberOfTuples(); ++point)
@@ -371,13 +374,12 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
   }
   this->GetCopies().Share(normals, DirectionSteps, true, CreaseCosine);
   // A point of a volume is not on a surface.
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; dimensions.Has(3) && cell < this->DataSet->GetNumberOfCells(); ++cell)
+  DatasetCells::Reader read(cells);
+  for (vtkIdType cell = 0; cells.Has(3) && cell < cells.GetNumberOfCells(); ++cell)
   {
-    if (dimensions.Get(this->DataSet->GetCellType(cell)) == 3 && !this->Hidden.HasCell(cell))
+    if (cells.GetDimension(cells.GetType(cell)) == 3 && !this->Hidden.HasCell(cell))
     {
-      this->DataSet->GetCellPoints(cell, ids);
-      for (const vtkIdType point : *ids)
+      for (const vtkIdType point : read(cell))
       {
         normals->SetTuple3(point, 0.0, 0.0, 0.0);
       }
@@ -664,6 +666,14 @@ namespace
 {
 using Places = std::vector<Eigen::Vector3d>;
 
+/// The root of their number; that of squares and cubes, which most cells are, without taking it.
+double SamplesOnSide(std::size_t count, int dimension)
+{
+  return count == std::size_t(1) << dimension
+    ? 2.0
+    : std::pow(static_cast<double>(count), 1.0 / dimension);
+}
+
 /// Spacing along each axis of samples that fill a cell of this dimension; `whole`: of the cell's sides.
 Eigen::Array3d SpacingOf(const Eigen::Vector3d* places, std::size_t count, int dimension, bool whole)
 {
@@ -685,7 +695,7 @@ Eigen::Array3d SpacingOf(const Eigen::Vector3d* places, std::size_t count, int d
     return (variance * ((dimension + 1.0) * (dimension + 1.0) / dimension)).sqrt();
   }
   // p intervals of h on a side: variance h^2 p (p + 2) / 12.
-  const double intervals = std::pow(static_cast<double>(count), 1.0 / dimension) - 1.0;
+  const double intervals = SamplesOnSide(count, dimension) - 1.0;
   const Eigen::Array3d spacing =
     (variance * (12.0 / (intervals * (intervals + 2.0)))).sqrt();
   return whole ? Eigen::Array3d(spacing * intervals) : spacing;
@@ -828,7 +838,7 @@ void SampleSpacing::Add(
     }
     return;
   }
-  const CellDimensions dimensions(dataset);
+  const DatasetCells allCells(dataset);
   const PointPlaces placeOf(dataset);
   // A slab's own thickness says nothing about the distance of its samples: one side of it does.
   int dims[3] = { 1, 1, 1 };
@@ -842,22 +852,22 @@ void SampleSpacing::Add(
     SampleSpacing Spacing;
     std::vector<vtkIdType> Vertices;
   };
-  const auto addCell = [&](vtkIdType id, vtkIdList* ids, Places& places, Part& part)
+  const auto addCell = [&](vtkIdType id, DatasetCells::Reader& read, Places& places, Part& part)
   {
     if (hidden.HasCell(id) || IsGhostCell(ghosts, id))
     {
       return;
     }
-    const int type = dataset->GetCellType(id);
-    const int dimension = slab >= 0 ? 2 : dimensions.Get(type);
-    dataset->GetCellPoints(id, ids);
+    const int type = allCells.GetType(id);
+    const int dimension = slab >= 0 ? 2 : allCells.GetDimension(type);
+    const CellIds ids = read(id);
     if (dimension == 0)
     {
-      part.Vertices.insert(part.Vertices.end(), ids->begin(), ids->end());
+      part.Vertices.insert(part.Vertices.end(), ids.begin(), ids.end());
       return;
     }
     places.clear();
-    for (const vtkIdType point : *ids)
+    for (const vtkIdType point : ids)
     {
       if (slab < 0 || point / strides[slab] % dims[slab] == 0)
       {
@@ -895,14 +905,14 @@ void SampleSpacing::Add(
       vtkSMPTools::For(0, static_cast<vtkIdType>(parts.size()), 1,
         [&](vtkIdType begin, vtkIdType end)
         {
-          vtkNew<vtkIdList> ids;
+          DatasetCells::Reader read(allCells);
           Places places;
           for (vtkIdType part = begin; part < end; ++part)
           {
             const vtkIdType last = std::min(cells, (part + 1) * partSize);
             for (vtkIdType id = part * partSize; id < last; id += step)
             {
-              addCell(id, ids, places, parts[static_cast<std::size_t>(part)]);
+              addCell(id, read, places, parts[static_cast<std::size_t>(part)]);
             }
           }
         });

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseShape.h"
 
+#include "DatasetCells.h"
 #include "NoiseBlocks.h"
-
-#include "CellSums.h"
 
 #include "vtkCommunicator.h"
 #include "vtkImageData.h"
@@ -107,7 +106,7 @@ void CommonShape::Add(vtkDataSet* dataset, bool cells, const int* wholeExtent)
     return;
   }
   state(NotImage, 1.0);
-  state(Volume, structured ? thick : CellDimensions(dataset).Has(3));
+  state(Volume, structured ? thick : DatasetCells(dataset).Has(3));
 }
 
 void CommonShape::Reduce(vtkMultiProcessController* controller)

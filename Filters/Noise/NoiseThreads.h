@@ -6,6 +6,8 @@
 #ifndef NoiseThreads_h
 #define NoiseThreads_h
 
+#include "SteerableNoise.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkFloatArray.h"
 #include "vtkSMPTools.h"
@@ -93,8 +95,14 @@ auto ForEachPart(vtkAlgorithm* algorithm, std::size_t parts, vtkIdType samples,
   constexpr std::size_t samplesPerSlice = 1u << 19;
   constexpr std::size_t samplesPerChunk = 1u << 15;
   const auto perPart = std::max<std::size_t>(1, static_cast<std::size_t>(samples) / parts);
-  const std::size_t slice = std::max<std::size_t>(parts / 20 + 1, samplesPerSlice / perPart + 1);
-  const std::size_t grain = samplesPerChunk / perPart + 1;
+  // Whole patches of rows, if the parts are rows.
+  const auto whole = [](std::size_t count)
+  {
+    constexpr std::size_t together = steerable::ImageGrid::RowsTogether;
+    return (count / together + 1) * together;
+  };
+  const std::size_t slice = whole(std::max(parts / 20, samplesPerSlice / perPart));
+  const std::size_t grain = whole(samplesPerChunk / perPart);
   std::mutex mutex;
   WithThreads(
     [&]

@@ -3,6 +3,7 @@
 #include "SurfaceFields.h"
 
 #include "CellSums.h"
+#include "DatasetCells.h"
 #include "NoiseArrays.h"
 #include "NoiseGhosts.h"
 #include "NoiseSamples.h"
@@ -87,20 +88,25 @@ vtkSmartPointer<vtkFloatArray> CellsToPoints(vtkPolyData* surface, vtkFloatArray
   const HiddenSamples hidden(surface);
   const auto counts = [&](vtkIdType cell)
   { return !std::isnan(cells->GetValue(components * cell)) && !hidden.HasCell(cell); };
-  const CellDimensions dimensions(surface); // threads may ask for cells from here on
+  const DatasetCells polygons(surface);
   for (int part = 0; part < components; part += 3)
   {
     auto means = NewOutputArray("Means", 3, count);
     PointSums sums(surface, means, DirectionSteps);
     sums.AddCells(false,
-      [&](vtkIdType cell, vtkIdList* ids, PointSums::Shares& shares)
+      [&]
       {
-        const float* tuple = cells->GetPointer(components * cell) + part;
-        surface->GetCellPoints(cell, ids);
-        for (vtkIdType i = 0; i < ids->GetNumberOfIds() && counts(cell); ++i)
+        return [&, read = DatasetCells::Reader(polygons)](vtkIdType cell, PointSums::Shares& shares) mutable
         {
-          sums.Append(shares, ids->GetId(i), Eigen::Vector3d(tuple[0], tuple[1], tuple[2]));
-        }
+          if (counts(cell))
+          {
+            const float* tuple = cells->GetPointer(components * cell) + part;
+            for (const vtkIdType point : read(cell))
+            {
+              sums.Append(shares, point, Eigen::Vector3d(tuple[0], tuple[1], tuple[2]));
+            }
+          }
+        };
       });
     sums.Finish();
     for (vtkIdType point = 0; point < count; ++point)
@@ -109,13 +115,15 @@ vtkSmartPointer<vtkFloatArray> CellsToPoints(vtkPolyData* surface, vtkFloatArray
     }
   }
   std::vector<bool> reached(static_cast<std::size_t>(count), false);
-  vtkNew<vtkIdList> ids;
-  for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell)
+  DatasetCells::Reader read(polygons);
+  for (vtkIdType cell = 0; cell < polygons.GetNumberOfCells(); ++cell)
   {
-    surface->GetCellPoints(cell, ids);
-    for (vtkIdType i = 0; i < ids->GetNumberOfIds() && counts(cell); ++i)
+    if (counts(cell))
     {
-      reached[static_cast<std::size_t>(ids->GetId(i))] = true;
+      for (const vtkIdType point : read(cell))
+      {
+        reached[static_cast<std::size_t>(point)] = true;
+      }
     }
   }
   for (vtkIdType point = 0; point < count; ++point)

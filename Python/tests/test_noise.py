@@ -121,6 +121,28 @@ def test_fill_values_are_blank_and_named(fill, dtype):
     assert np.array_equal(n, noise(field, mask_upper_threshold=1000.0))
 
 
+@pytest.mark.parametrize("field", [vortex(), swirl()])
+def test_fill_values_are_found_wherever_components_lie(field):
+    for component in range(field.shape[-1]):
+        field[-1, ..., -1, component] = 1e20
+        apart = tuple(field[..., c].copy() for c in range(field.shape[-1]))
+        beside = np.full((*field.shape[:-1], 5), np.nan)  # what no array of ours may look at
+        beside[..., :field.shape[-1]] = field
+        for layout in (field, apart, beside[..., :field.shape[-1]], np.asfortranarray(field),
+                       field.astype(np.float32)):
+            with pytest.warns(UserWarning, match="hold 1e[+]20"):
+                assert not noise(layout)[-1, ..., -1].any()
+        field[-1, ..., -1, component] = 1.0
+
+
+def test_some_vectors_too_short_to_square_keep_their_direction():
+    field = vortex()
+    short = field.copy()
+    short[30:] *= 1e-30
+    expected = noise(field, follow_curvature=False)
+    np.testing.assert_allclose(noise(short, follow_curvature=False), expected, atol=1e-4)
+
+
 def test_far_vectors_that_are_no_fill_values_stay():
     field = vortex()
     field[5, 5], field[6, 6] = (4000.0, 0.0), (0.0, 9000.0)

@@ -24,7 +24,7 @@ constexpr std::size_t CellsColumns = 256;
 /// Samples that share lists of corners where they can.
 constexpr std::size_t TileSamples = 64;
 /// Where walks want it, a block of an image is this many rows of this many samples.
-constexpr std::size_t PatchRows = 8;
+constexpr std::size_t PatchRows = ImageGrid::RowsTogether;
 constexpr std::size_t PatchColumns = BlockSize / PatchRows;
 /// Room for a whole SIMD register behind each row, and behind the block.
 constexpr std::size_t PatchStride = PatchColumns + 16;

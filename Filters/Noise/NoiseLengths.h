@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * How long the tuples of VTK's arrays are, over blocks and ranks. Shared with this project's rendering
- * module.
+ * How long the tuples of VTK's arrays are, over blocks and ranks. Shared with this project's
+ * rendering module.
  */
 #ifndef NoiseLengths_h
 #define NoiseLengths_h
@@ -37,7 +37,8 @@ struct LengthRange
   /// Tuples that were taken for fill values, by the rule of vtkSteerableNoiseFilter.
   double Fills = 0.0;
 
-  /// Tuples far longer than all others, fill values or not: how many, the longest of them and of the rest.
+  /// Tuples far longer than all others, fill values or not: how many, the longest of them and of
+  /// the rest.
   double FarCount = 0.0;
   double FarLongest = 0.0;
   double FarRest = 0.0;
@@ -46,8 +47,9 @@ struct LengthRange
 };
 
 /**
- * Of these arrays, and of those of the other ranks of `controller`, which may be null. `upperThreshold`: the
- * limit; 0: fill values are found and left out. Longest is found where `longest` asks for it, else maybe.
+ * Of these arrays, and of those of the other ranks of `controller`, which may be null.
+ * `upperThreshold`: the limit; 0: fill values are found and left out. Longest is found where
+ * `longest` asks for it, else maybe.
  */
 STEERABLENOISEFILTERS_EXPORT LengthRange FindLengths(const std::vector<LengthSource>& arrays,
   double upperThreshold, vtkMultiProcessController* controller, bool longest = true);

@@ -22,8 +22,8 @@ struct CommonSizes
   SampleSpacing Spacing;
 
   /**
-   * Adds a dataset with samples at its points or `cells`; `slab`: Shape's. `exact`: the spacing decides more
-   * than a warning.
+   * Adds a dataset with samples at its points or `cells`; `slab`: Shape's. `exact`: the spacing
+   * decides more than a warning.
    */
   void Add(vtkDataSet* dataset, bool cells, int slab, bool exact);
   void Add(const CommonSizes& other);
@@ -32,8 +32,8 @@ struct CommonSizes
   void Reduce(vtkMultiProcessController* controller);
 
   /**
-   * The largest of the distances of neighbours along the axes, of those along which 4 fit into the largest
-   * size or that are at most twice the smallest.
+   * The largest of the distances of neighbours along the axes, of those along which 4 fit into the
+   * largest size or that are at most twice the smallest.
    */
   double GetSampleSpacing() const;
 

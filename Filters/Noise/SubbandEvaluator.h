@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Subband noise at the points of a surface (private to this module): tiles, looked up and weighted as
- * SubbandPoints says, summed over bands, planes and octaves.
+ * Subband noise at the points of a surface (private to this module): tiles, looked up and weighted
+ * as SubbandPoints says, summed over bands, planes and octaves.
  */
 #ifndef SubbandEvaluator_h
 #define SubbandEvaluator_h

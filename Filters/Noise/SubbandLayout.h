@@ -21,7 +21,8 @@ struct SubbandLayout
   double FixedScale = 0.0; ///< Of noise that ignores the mapping.
 };
 
-/// Wavelengths in world units: what the property says, and the least and the greatest where an array does.
+/// Wavelengths in world units: what the property says, and the least and the greatest where an
+/// array does.
 struct WavelengthRange
 {
   double Usual = 1.0;
@@ -36,11 +37,11 @@ constexpr double PointsPerWavelength = 8.0;
 constexpr double ClampedOctaves = 0.05;
 
 /**
- * Tiles for texture coordinates: the fewest scales, and the fewest repeats, with which all but a little
- * of the surface finds its wavelengths in the pyramid; else the repeats that miss it by least. Only
- * whole repeats keep the texture's seams, so a tile is spread over several repeats of a texture only
- * where that is much too fine. `diagonal`: of the bounds that `sums` were taken with. `anisotropy`:
- * the most that steers.
+ * Tiles for texture coordinates: the fewest scales, and the fewest repeats, with which all but a
+ * little of the surface finds its wavelengths in the pyramid; else the repeats that miss it by
+ * least. Only whole repeats keep the texture's seams, so a tile is spread over several repeats of a
+ * texture only where that is much too fine. `diagonal`: of the bounds that `sums` were taken with.
+ * `anisotropy`: the most that steers.
  */
 SubbandLayout LayOnTexture(steerable::SubbandParameters pyramid, const SurfaceSums& sums,
   double diagonal, const WavelengthRange& wavelengths, double anisotropy);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * What subband noise of all blocks and ranks agrees on (private to this module), so that it goes on
- * from one to the next: bounds, spacing of the points, wavelength, stretch of the texture, seams, and
- * from these how tiles are laid and weights of points are found.
+ * from one to the next: bounds, spacing of the points, wavelength, stretch of the texture, seams,
+ * and from these how tiles are laid and weights of points are found.
  */
 #ifndef SubbandPlan_h
 #define SubbandPlan_h
@@ -117,7 +117,8 @@ private:
 
 /**
  * The AgreeOn functions come first, in their order, on all ranks of the controller; each needs what
- * the ones before found. One that fails on this rank says why in Failure, and the others still take part.
+ * the ones before found. One that fails on this rank says why in Failure, and the others still take
+ * part.
  */
 struct SubbandPlan
 {
@@ -146,7 +147,8 @@ struct SubbandPlan
   double MostAnisotropy = std::numeric_limits<double>::infinity(); ///< That the orientations reach.
   double WantedAnisotropy = 1.0; ///< The most that is reached.
 
-  /// Whether the texture carries noise, and where planes take over. Takes it from blocks where it does not.
+  /// Whether the texture carries noise, and where planes take over. Takes it from blocks where it
+  /// does not.
   void AgreeOnTexture(std::vector<SubbandBlock>& blocks);
   bool IsShattered = false; ///< Into charts smaller than a wavelength.
   double SmallCharts = 0.0;
@@ -164,8 +166,9 @@ struct SubbandPlan
   }
 
   /**
-   * What weights of a block's points are found with, and in which tiles they are looked up; those that
-   * lack are made. It is good until tiles are made for another phase. Throws std::invalid_argument.
+   * What weights of a block's points are found with, and in which tiles they are looked up; those
+   * that lack are made. It is good until tiles are made for another phase. Throws
+   * std::invalid_argument.
    */
   SubbandPointWeights GetPointWeights(const SubbandBlock& block);
 

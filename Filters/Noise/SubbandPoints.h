@@ -130,7 +130,8 @@ struct SubbandPointWeights
   SubbandPointCounts FindPoints(const SubbandSurface& surface, const SteeringVectors& vectors,
     vtkUnsignedCharArray* ghosts, vtkIdType first, vtkIdType last, SubbandChunk& chunk) const;
 
-  /// Adds the weights of octaves that points of a lookup lack; their chunk begins at the point `first`.
+  /// Adds the weights of octaves that points of a lookup lack; their chunk begins at the point
+  /// `first`.
   void Weigh(SubbandPlanePoints& plane, std::size_t which, vtkIdType first) const;
 
   /// All that they depend on besides the surface, for comparison.

@@ -41,11 +41,13 @@ private:
   std::vector<steerable::SubbandTiles> Planes;
 };
 
-/// The tiles that an image of bands holds, made by vtkImageSubbandDecomposition or vtkImageSubbandNoiseSource.
+/// The tiles that an image of bands holds, made by vtkImageSubbandDecomposition or
+/// vtkImageSubbandNoiseSource.
 class SubbandImageTiles
 {
 public:
-  /// Read anew only for another image or a changed one. Throws std::invalid_argument where it has no bands.
+  /// Read anew only for another image or a changed one. Throws std::invalid_argument where it has
+  /// no bands.
   const steerable::SubbandTiles& Update(vtkImageData* image);
 
 private:

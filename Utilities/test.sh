@@ -8,4 +8,4 @@ build_project -DSTEERABLENOISE_DATA=ON -DBUILD_TESTING=ON
 # CI runs the sanitizers and the fuzzers too; by hand they are bash Utilities/sanitize.sh.
 [ "${CI:-}" != true ] || bash "$root/Utilities/sanitize.sh"
 cd "$build"
-ctest --output-on-failure "$@"
+ctest --output-on-failure -j "$(nproc)" "$@"

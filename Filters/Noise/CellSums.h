@@ -13,8 +13,8 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <cstdint>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <vector>
 
@@ -74,7 +74,7 @@ public:
   {
     // So many that threads are worth it, so few that their shares take little memory.
     constexpr vtkIdType chunkSize = 128;
-    constexpr vtkIdType chunksPerBatch = 32;
+    constexpr vtkIdType chunksPerBatch = 64;
     const vtkIdType cells = this->DataSet->GetNumberOfCells();
     const auto points = static_cast<vtkIdType>(this->Counts.size());
     const vtkIdType threads =

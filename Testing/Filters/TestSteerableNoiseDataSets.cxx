@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkSteerableNoiseFilter on every type of dataset and composite, and on what is wrong with them.
+#include "DatasetCells.h"
 #include "FilterTestHelpers.h"
 #include "NoiseCells.h"
 #include "NoiseGhosts.h"
@@ -303,6 +304,128 @@ TEST(SteerableNoiseDataSets, StripsAndPointSetsBendLikeTheirSimplices)
   EXPECT_LE(LargestDifference(Values(Apply(Cells(VTK_CONVEX_POINT_SET, corners), configure).Output),
               Values(Apply(Cells(VTK_TETRA, corners), configure).Output)),
     1e-6);
+}
+
+/// Cells with parallel sides have one gradient, whatever it is made from and in which order their corners are.
+TEST(SteerableNoiseDataSets, CellsWithParallelSidesBendAlike)
+{
+  const std::function<void(vtkSteerableNoiseFilter*)> configure =
+    [](vtkSteerableNoiseFilter* filter) { filter->SetFeatureSize(1.0); };
+  // Corners of a sheared box, in the order of an image.
+  std::vector<Eigen::Vector3d> box;
+  for (int i = 0; i < 8; ++i)
+  {
+    box.push_back(Eigen::Vector3d(2.0, 0.1, 0.2) * (i & 1) +
+      Eigen::Vector3d(0.3, 1.5, 0.0) * (i >> 1 & 1) + Eigen::Vector3d(0.0, 0.4, 1.0) * (i >> 2));
+  }
+  const auto noiseOf = [&](int type, const std::vector<int>& corners)
+  {
+    std::vector<double> places;
+    for (const int corner : corners)
+    {
+      places.insert(places.end(), box[corner].begin(), box[corner].end());
+    }
+    const std::vector<float> values = Values(Apply(Cells(type, places), configure).Output);
+    std::map<int, float> byCorner;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+    {
+      byCorner[corners[i]] = values.at(i);
+    }
+    return byCorner;
+  };
+  struct Shape
+  {
+    int Type;
+    std::vector<int> Corners;
+  };
+  // The last of each is fitted, as cells of any shape are.
+  const std::vector<Shape> alike[] = {
+    { { VTK_VOXEL, { 0, 1, 2, 3, 4, 5, 6, 7 } }, { VTK_HEXAHEDRON, { 0, 1, 3, 2, 4, 5, 7, 6 } },
+      { VTK_CONVEX_POINT_SET, { 0, 1, 2, 3, 4, 5, 6, 7 } } },
+    { { VTK_PIXEL, { 0, 1, 2, 3 } }, { VTK_QUAD, { 0, 1, 3, 2 } }, { VTK_POLYGON, { 0, 1, 3, 2 } } }
+  };
+  for (const auto& shapes : alike)
+  {
+    const auto expected = noiseOf(shapes.back().Type, shapes.back().Corners);
+    for (const Shape& shape : shapes)
+    {
+      for (const auto& [corner, noise] : noiseOf(shape.Type, shape.Corners))
+      {
+        EXPECT_NEAR(noise, expected.at(corner), 2e-6) << "type " << shape.Type << ", corner " << corner;
+      }
+    }
+  }
+}
+
+TEST(SteerableNoiseDataSets, CellsAreReadAsVtkGivesThem)
+{
+  const auto expectSame = [](vtkDataSet* dataset)
+  {
+    const noise::DatasetCells cells(dataset);
+    noise::DatasetCells::Reader read(cells);
+    vtkNew<vtkIdList> expected;
+    vtkNew<vtkGenericCell> cell;
+    ASSERT_EQ(cells.GetNumberOfCells(), dataset->GetNumberOfCells());
+    ASSERT_GT(cells.GetNumberOfCells(), 0);
+    for (vtkIdType id = 0; id < cells.GetNumberOfCells(); ++id)
+    {
+      const int type = cells.GetType(id);
+      EXPECT_EQ(type, dataset->GetCellType(id));
+      dataset->GetCell(id, cell);
+      EXPECT_EQ(cells.GetDimension(type), cell->GetCellDimension());
+      EXPECT_TRUE(cells.Has(cells.GetDimension(type)));
+      EXPECT_EQ(cells.IsCurved(type), !cell->IsLinear());
+      const noise::CellIds ids = read(id);
+      dataset->GetCellPoints(id, expected);
+      EXPECT_EQ(std::vector<vtkIdType>(ids.begin(), ids.end()),
+        std::vector<vtkIdType>(expected->begin(), expected->end()));
+    }
+  };
+  const auto makeCells = [](const std::vector<vtkIdType>& sizes, bool wide)
+  {
+    auto cells = vtkSmartPointer<vtkCellArray>::New();
+    wide ? cells->Use64BitStorage() : cells->Use32BitStorage();
+    vtkIdType first = 0;
+    for (const vtkIdType size : sizes)
+    {
+      cells->InsertNextCell(static_cast<int>(size));
+      for (vtkIdType i = 0; i < size; ++i)
+      {
+        cells->InsertCellPoint((first + 2 * i) % 12);
+      }
+      ++first;
+    }
+    return cells;
+  };
+  vtkNew<vtkPoints> points;
+  for (int i = 0; i < 12; ++i)
+  {
+    points->InsertNextPoint(i % 4, i / 4, 0.1 * i * i);
+  }
+  for (const bool wide : { true, false })
+  {
+    // Verts, lines, polygons and strips, alone and together.
+    for (int kinds = 1; kinds < 16; ++kinds)
+    {
+      vtkNew<vtkPolyData> surface;
+      surface->SetPoints(points);
+      surface->SetVerts(makeCells(kinds & 1 ? std::vector<vtkIdType>{ 1, 3, 1 } : std::vector<vtkIdType>{}, wide));
+      surface->SetLines(makeCells(kinds & 2 ? std::vector<vtkIdType>{ 2, 5, 2 } : std::vector<vtkIdType>{}, wide));
+      surface->SetPolys(makeCells(kinds & 4 ? std::vector<vtkIdType>{ 3, 6, 4, 5 } : std::vector<vtkIdType>{}, wide));
+      surface->SetStrips(makeCells(kinds & 8 ? std::vector<vtkIdType>{ 5, 3, 4 } : std::vector<vtkIdType>{}, wide));
+      expectSame(surface);
+    }
+    vtkNew<vtkUnstructuredGrid> grid;
+    grid->SetPoints(points);
+    vtkNew<vtkUnsignedCharArray> types;
+    for (const int type : { VTK_QUADRATIC_TRIANGLE, VTK_TETRA, VTK_PIXEL, VTK_WEDGE })
+    {
+      types->InsertNextValue(static_cast<unsigned char>(type));
+    }
+    grid->SetCells(types, makeCells({ 6, 4, 4, 6 }, wide));
+    expectSame(grid);
+  }
+  expectSame(Box(false));
 }
 
 TEST(SteerableNoiseDataSets, SurfacesTakeTheMetricOfTheirTangentPlane)

@@ -319,6 +319,7 @@ private:
   vtkPolyDataSubbandNoise(const vtkPolyDataSubbandNoise&) = delete;
   void operator=(const vtkPolyDataSubbandNoise&) = delete;
 
+  struct Execution;
   struct Internals;
   Internals* Cache; // tiles and weights, kept while their parameters stand
 };

@@ -3,6 +3,7 @@
 #include "vtkSteerableNoiseMapper.h"
 
 #include "NoiseShader.h"
+#include "NoiseLengths.h"
 #include "SurfaceFields.h"
 
 #include "vtkActor.h"
@@ -664,9 +665,9 @@ STEERABLENOISE_OPTION(UseMaskColor, bool, UseMaskColor, UseMaskColor, )
 STEERABLENOISE_OPTION(Seed, int, Model.Seed, static_cast<std::uint32_t>(Seed), )
 STEERABLENOISE_OPTION(Octaves, int, Model.Octaves, Clamp(Octaves, 1, 8), VARIANT)
 STEERABLENOISE_OPTION(OutputValue, bool, OutputValue, OutputValue, VARIANT)
-STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthBy,
+STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthMode,
   StrengthMode == MAGNITUDE ? steerable::StrengthMode::Magnitude : steerable::StrengthMode::Constant, )
-STEERABLENOISE_OPTION(Basis, int, Model.Surflet,
+STEERABLENOISE_OPTION(Basis, int, Model.Basis,
   Basis == STREAKS ? steerable::Basis::Streaks : steerable::Basis::Gradient, VARIANT)
 // Decides on which pass the geometry is drawn, too.
 STEERABLENOISE_OPTION(NoiseColorMode, int, ColorMode, Clamp<int>(NoiseColorMode, MULTIPLY, OPACITY),
@@ -705,7 +706,7 @@ vtkSteerableNoiseMapper::Internals::Extremes vtkSteerableNoiseMapper::Internals:
   vtkDataObject* input, vtkInformation* choice, vtkMultiProcessController* controller) const
 {
   Extremes extremes;
-  std::vector<vtkDataArray*> arrays;
+  std::vector<noise::LengthSource> arrays;
   ForEachPolyData(input,
     [&](vtkPolyData* data)
     {
@@ -720,7 +721,7 @@ vtkSteerableNoiseMapper::Internals::Extremes vtkSteerableNoiseMapper::Internals:
       }
       if (array)
       {
-        arrays.push_back(array);
+        arrays.push_back({ array });
       }
     });
   extremes.Lengths =

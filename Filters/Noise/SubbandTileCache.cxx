@@ -86,7 +86,7 @@ const std::vector<steerable::SubbandTiles>& SubbandTileCache::Update(
   {
     if (std::abs(loop[n % 4]) > 1e-9)
     {
-      needed.push_back(4 * first + n);
+      needed.push_back(steerable::LoopRealization(first + n / 4, n % 4));
       weights.push_back(loop[n % 4]);
     }
   }

@@ -8,7 +8,7 @@
 #include "MetricTensor.h"
 #include "PatientThreads.h"
 #include "SteerableNoise.h"
-#include "SubbandTiles.h"
+#include "Subband/SubbandTiles.h"
 
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/array.h>
@@ -317,12 +317,12 @@ NB_MODULE(_kernel, module)
     .def_rw("streak_length", &NoiseParameters::StreakLength)
     .def_rw("eigenvalue_sum", &NoiseParameters::EigenvalueSum)
     .def_rw("strength", &NoiseParameters::Strength)
-    .def_rw("strength_mode", &NoiseParameters::StrengthBy)
+    .def_rw("strength_mode", &NoiseParameters::StrengthMode)
     .def_rw("reference_magnitude", &NoiseParameters::ReferenceMagnitude)
     .def_rw("mask_threshold", &NoiseParameters::MaskThreshold)
     .def_rw("follow_curvature", &NoiseParameters::FollowCurvature)
-    .def_rw("normalization", &NoiseParameters::Normalize)
-    .def_rw("basis", &NoiseParameters::Surflet)
+    .def_rw("normalization", &NoiseParameters::Normalization)
+    .def_rw("basis", &NoiseParameters::Basis)
     .def_rw("density", &NoiseParameters::Density)
     .def_rw("motion", &NoiseParameters::Motion)
     .def_rw("phase", &NoiseParameters::Phase)

@@ -16,9 +16,9 @@ forbid "The kernel includes VTK or ParaView" "vtk|pq|Qt" Filters/Kernel
 forbid "The filters include ParaView or OpenGL" "vtkPV|vtkSM[^P]|vtkSI|pq|Qt|vtkOpenGL|GL/" Filters/Noise
 forbid "The mapper includes ParaView" "vtkPV|vtkSM[^P]|vtkSI|pq|Qt" Rendering
 forbid "The mappers include more of the kernel than parameters, metrics' constants, hash and tiles" \
-  "SteerableNoise(Reference)?\.h|Fast/|Subband(Weights|Filters|Anisotropy)" Rendering
+  "SteerableNoise(Reference)?\.h|Fast/|Subband/Subband(Weights|Filters|Anisotropy)" Rendering
 forbid "The representation includes the kernel" \
-  "NoiseParameters|LatticeHash|MetricTensor|SteerableNoise(Reference)?\.h|Fast/|Surflet|Subband" Plugin/Representations
+  "NoiseParameters|LatticeHash|MetricTensor|SteerableNoise(Reference)?\.h|Fast/|Surflet|Subband/" Plugin/Representations
 # SIMD and FFT libraries stay inside the kernel's sources.
 if found=$(grep -rnlE '#[[:space:]]*include[[:space:]]*<(hwy|unsupported)/' Filters Plugin 2>/dev/null | grep -v '^Filters/Kernel/.*\(\.cxx\|-inl\.h\)$'); then
   echo "SIMD or FFT headers outside the kernel's sources: $found"

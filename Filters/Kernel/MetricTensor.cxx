@@ -52,13 +52,13 @@ NoiseParameters WithShape(const NoiseParameters& parameters, const float* shape)
   take(own.StreakLength, shape[0], 1.0, 20.0);
   take(own.Strength, shape[1], 0.0, 1.0);
   take(own.EigenvalueSum, shape[2], 2.0,
-    parameters.Normalize == Normalization::WeightSum ? 4.0 : 16.0);
+    parameters.Normalization == Normalization::WeightSum ? 4.0 : 16.0);
   return own;
 }
 
 double StrengthOf(const NoiseParameters& parameters, double magnitude)
 {
-  if (parameters.StrengthBy == StrengthMode::Magnitude)
+  if (parameters.StrengthMode == StrengthMode::Magnitude)
   {
     return parameters.Strength * std::min(1.0, magnitude / parameters.ReferenceMagnitude);
   }

@@ -33,11 +33,11 @@ void NoiseParameters::Validate() const
     this->MinimumEigenvalue, "from 0.01 to 1");
   Require(this->EigenvalueSum >= 2.0 && this->EigenvalueSum <= 16.0, "EigenvalueSum",
     this->EigenvalueSum, "from 2 to 16");
-  Require(this->Normalize != Normalization::WeightSum || this->EigenvalueSum <= 4.0,
+  Require(this->Normalization != Normalization::WeightSum || this->EigenvalueSum <= 4.0,
     "EigenvalueSum", this->EigenvalueSum, "4 or less with Normalization WeightSum");
   Require(
     this->Strength >= 0.0 && this->Strength <= 1.0, "Strength", this->Strength, "from 0 to 1");
-  Require(this->StrengthBy == StrengthMode::Constant || this->ReferenceMagnitude > 0.0,
+  Require(this->StrengthMode == StrengthMode::Constant || this->ReferenceMagnitude > 0.0,
     "ReferenceMagnitude", this->ReferenceMagnitude, "positive with StrengthMode Magnitude");
   Require(this->MaskThreshold >= 0.0, "MaskThreshold", this->MaskThreshold, "0 or more");
   Require(
@@ -55,7 +55,7 @@ void NoiseParameters::Validate() const
     Require(cells * std::pow(this->Lacunarity, this->Octaves - 1) < 1073741824.0, "Period", cells,
       "less than 2^30 cells in the last octave");
     Require(cells >= 0, "Period", cells, "0 or more");
-    Require(cells == 0 || this->Grid != Lattice::Simplicial, "Period", cells,
+    Require(cells == 0 || this->Lattice != Lattice::Simplicial, "Period", cells,
       "0 on the Simplicial lattice, whose axes are oblique");
     Require(cells == 0 || this->Octaves == 1 || this->Lacunarity == std::floor(this->Lacunarity),
       "Lacunarity", this->Lacunarity, "a whole number with Period and more than one octave");

@@ -23,7 +23,7 @@ enum class Basis
   Streaks
 };
 
-/// What the sum of surflets is divided by (see NoiseParameters::Normalize).
+/// What the sum of surflets is divided by (see NoiseParameters::Normalization).
 enum class Normalization
 {
   None,
@@ -95,7 +95,7 @@ struct NoiseParameters
 
   /// 0: isotropic metric, 1: fully anisotropic.
   double Strength = 1.0;
-  StrengthMode StrengthBy = StrengthMode::Constant;
+  steerable::StrengthMode StrengthMode = steerable::StrengthMode::Constant;
   /// Length of a vector that reaches the full strength, > 0 with StrengthMode::Magnitude.
   double ReferenceMagnitude = 1.0;
   /// Vectors no longer than this are stagnant and give 0; 0 switches the mask off.
@@ -104,8 +104,8 @@ struct NoiseParameters
   /// Surflets bend with the streamlines; images work their curvature out from their neighbours.
   bool FollowCurvature = true;
 
-  Normalization Normalize = Normalization::UnitVariance;
-  Basis Surflet = Basis::Gradient;
+  steerable::Normalization Normalization = steerable::Normalization::UnitVariance;
+  steerable::Basis Basis = steerable::Basis::Gradient;
   /// How densely streaks lie, (0, 1]; see GetStreakProbability.
   double Density = 0.25;
 
@@ -123,10 +123,10 @@ struct NoiseParameters
   /// Sum of absolute values instead.
   bool Turbulence = false;
 
-  Fade Interpolant = Fade::Quintic;
-  Falloff Window = Falloff::Separable;
-  Lattice Grid = Lattice::Square;
-  GradientSet Gradients = GradientSet::Uniform;
+  steerable::Fade Fade = steerable::Fade::Quintic;
+  steerable::Falloff Falloff = steerable::Falloff::Separable;
+  steerable::Lattice Lattice = steerable::Lattice::Square;
+  steerable::GradientSet GradientSet = steerable::GradientSet::Uniform;
   /// Cells per axis after which the noise repeats; 0: never.
   std::array<int, 3> Period = { 0, 0, 0 };
   std::uint32_t Seed = 0;

@@ -78,7 +78,7 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
     throw std::invalid_argument(
       "The noise needs vectors, tensors, metrics or nothing to steer it, one of them.");
   }
-  if (field.Isotropic && p.Surflet == Basis::Streaks)
+  if (field.Isotropic && p.Basis == Basis::Streaks)
   {
     throw std::invalid_argument("Streaks need a direction: take another Basis, or vectors.");
   }
@@ -95,7 +95,7 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
   {
     // What goes by the vectors, of which there are none.
     p.Strength = 0.0;
-    p.StrengthBy = StrengthMode::Constant;
+    p.StrengthMode = StrengthMode::Constant;
     p.MaskThreshold = 0.0;
     curved = false;
   }
@@ -121,16 +121,16 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
   }
   setup.OctaveScale = static_cast<float>(1.0 / std::sqrt(power));
 
-  setup.Support = static_cast<float>(FadeSupport(p.Interpolant));
+  setup.Support = static_cast<float>(FadeSupport(p.Fade));
   setup.WindowReach =
     p.LatticeWindow ? setup.Support * (p.Quality + 1) : std::numeric_limits<float>::infinity();
-  const bool gradients = p.Surflet == Basis::Gradient && p.Window == Falloff::Separable &&
-    p.Grid == Lattice::Square && !p.Motion;
-  const bool plain = gradients && p.Interpolant == Fade::Quintic &&
-    p.Gradients == GradientSet::Uniform && p.AnisotropicWeight && p.MetricInProjection;
+  const bool gradients = p.Basis == Basis::Gradient && p.Falloff == Falloff::Separable &&
+    p.Lattice == Lattice::Square && !p.Motion;
+  const bool plain = gradients && p.Fade == Fade::Quintic &&
+    p.GradientSet == GradientSet::Uniform && p.AnisotropicWeight && p.MetricInProjection;
   setup.Variant = !plain;
   // Perlin's own noise, also with a metric in the projection.
-  const bool unweighted = gradients && p.Interpolant != Fade::Wide && !p.AnisotropicWeight;
+  const bool unweighted = gradients && p.Fade != Fade::Wide && !p.AnisotropicWeight;
   setup.Biaxial = dimension == 3 && (field.Tensors || field.Metrics || field.Normals);
   setup.Curved = curved;
   const bool shaped = field.Shapes && !field.Isotropic;
@@ -138,20 +138,20 @@ NoiseSetup MakeSetup(NoiseParameters p, int dimension, const Field& field, bool 
     plain && !curved && !p.LatticeWindow && weak && !shaped && !field.Metrics;
   setup.SingleCell = setup.Ball ||
     (p.Quality == 0 && (plain || unweighted) && p.LatticeWindow && !setup.Biaxial && !curved &&
-      p.Normalize == Normalization::None);
+      p.Normalization == Normalization::None);
   setup.Uniform = setup.SingleCell && !setup.Biaxial && !shaped &&
-    p.StrengthBy == StrengthMode::Constant &&
+    p.StrengthMode == StrengthMode::Constant &&
     !(p.MaskThreshold > 0.0) && p.Octaves == 1 && !p.Turbulence;
   setup.CellRounding = setup.SingleCell ? 0.0 : 0.5;
-  const bool jittered = p.Grid == Lattice::Jittered;
-  const bool streaks = p.Surflet == Basis::Streaks && !jittered;
+  const bool jittered = p.Lattice == Lattice::Jittered;
+  const bool streaks = p.Basis == Basis::Streaks && !jittered;
   setup.JitterDown = streaks ? 0.5f : 0.0f;
   setup.JitterUp = jittered ? 1.0f : setup.JitterDown;
   setup.JitterMiddle = 0.5f * (setup.JitterUp - setup.JitterDown);
   setup.JitterRadius =
     0.5f * (setup.JitterUp + setup.JitterDown) * std::sqrt(static_cast<float>(dimension));
-  const Matrix<3> steps3 = LatticeSteps<3>(p.Grid);
-  const Matrix<2> steps2 = LatticeSteps<2>(p.Grid);
+  const Matrix<3> steps3 = LatticeSteps<3>(p.Lattice);
+  const Matrix<2> steps2 = LatticeSteps<2>(p.Lattice);
   Matrix<3> steps = Matrix<3>::Identity();
   if (dimension == 2)
   {

@@ -29,13 +29,13 @@ struct Octave
   /// Π_axes fade(v_axis / (Quality + 1)), or the same of the distance.
   double Window(const Vector<N>& v) const
   {
-    const Fade fade = this->Parameters.Interpolant;
+    const Fade fade = this->Parameters.Fade;
     const double reach = this->Parameters.Quality + 1;
     if (!this->Parameters.LatticeWindow)
     {
       return 1.0;
     }
-    if (this->Parameters.Window == Falloff::Radial)
+    if (this->Parameters.Falloff == Falloff::Radial)
     {
       return FadeOf(fade, v.norm() / reach);
     }
@@ -50,7 +50,7 @@ struct Octave
   /// Half the side of the box of corners that can matter.
   double Reach() const
   {
-    const double support = FadeSupport(this->Parameters.Interpolant);
+    const double support = FadeSupport(this->Parameters.Fade);
     if (this->Parameters.LatticeWindow)
     {
       return support * (this->Parameters.Quality + 1);
@@ -68,10 +68,10 @@ struct Octave
     const NoiseParameters& p = this->Parameters;
     const Vector<N>& u = this->Metric.Direction;
     const Matrix<N> G = this->Metric.ToMatrix();
-    if (p.Grid == Lattice::Jittered || p.Surflet == Basis::Streaks)
+    if (p.Lattice == Lattice::Jittered || p.Basis == Basis::Streaks)
     {
       // Kensler jitters within the cell, [0, 1); streaks about their corner, [-1/2, 1/2).
-      const double shift = p.Grid == Lattice::Jittered ? 0.0 : -0.5;
+      const double shift = p.Lattice == Lattice::Jittered ? 0.0 : -0.5;
       for (int axis = 0; axis < N; ++axis)
       {
         v[axis] += HashToUnit(HashStream(hash, 3 + axis)) + shift;
@@ -94,15 +94,15 @@ struct Octave
     const double window = this->Window(v);
     const Vector<N> Gv = G * bent;
     const double q = bent.dot(Gv);
-    const double weight = window * (p.AnisotropicWeight ? FadeOf(p.Interpolant, q) : 1.0);
-    switch (p.Surflet)
+    const double weight = window * (p.AnisotropicWeight ? FadeOf(p.Fade, q) : 1.0);
+    switch (p.Basis)
     {
       case Basis::Gradient:
       {
         const Vector<N> projected = p.MetricInProjection ? Gv : bent;
-        sums.Noise += amplitude * weight * GradientOf<N>(p.Gradients, hash).dot(projected);
+        sums.Noise += amplitude * weight * GradientOf<N>(p.GradientSet, hash).dot(projected);
         sums.Variance +=
-          weight * weight * projected.squaredNorm() * GradientVariance(p.Gradients, N);
+          weight * weight * projected.squaredNorm() * GradientVariance(p.GradientSet, N);
         sums.Weight += weight;
         break;
       }
@@ -118,7 +118,7 @@ struct Octave
         const double across = std::sqrt(std::max(0.0, q - scaled * scaled));
         const double profile = this->Metric.Degenerate
           ? 0.0
-          : window * StreakProfile(-scaled) * FadeOf(p.Interpolant, across);
+          : window * StreakProfile(-scaled) * FadeOf(p.Fade, across);
         const double probability = p.GetStreakProbability();
         const bool on = HashToUnit(HashStream(hash, 2)) < probability;
         sums.Noise += on ? amplitude * profile : 0.0;
@@ -132,7 +132,7 @@ struct Octave
   double Evaluate(const Vector<N>& point) const
   {
     const NoiseParameters& p = this->Parameters;
-    const Matrix<N> steps = LatticeSteps<N>(p.Grid);
+    const Matrix<N> steps = LatticeSteps<N>(p.Lattice);
     const Matrix<N> toIndex = steps.inverse();
     const Vector<N> inLattice = toIndex * point;
     // Jitter moves a corner by up to 1 cell; oblique steps need more of them to fill the box.
@@ -162,7 +162,7 @@ struct Octave
     }
 
     // Normalisation.
-    switch (p.Normalize)
+    switch (p.Normalization)
     {
       case Normalization::WeightSum:
         return sums.Weight > 0.0 ? sums.Noise / sums.Weight : 0.0;

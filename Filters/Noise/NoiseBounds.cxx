@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseBounds.h"
 
+#include "NoiseBlocks.h"
 #include "NoiseGhosts.h"
 #include "SurfaceFields.h"
 
@@ -9,7 +10,6 @@
 #include "vtkCommunicator.h"
 #include "vtkDataSet.h"
 #include "vtkMath.h"
-#include "vtkMultiProcessController.h"
 
 #include <algorithm>
 #include <cmath>
@@ -74,12 +74,7 @@ void CommonBounds::Add(vtkDataSet* dataset, const HiddenSamples& hidden)
 
 void CommonBounds::Reduce(vtkMultiProcessController* controller)
 {
-  if (controller && controller->GetNumberOfProcesses() > 1)
-  {
-    double here[6];
-    std::copy_n(this->Values, 6, here);
-    controller->AllReduce(here, this->Values, 6, vtkCommunicator::MIN_OP);
-  }
+  noise::Reduce(controller, this->Values, 6, vtkCommunicator::MIN_OP);
 }
 
 double CommonBounds::GetSide(int axis) const

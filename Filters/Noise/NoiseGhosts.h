@@ -24,6 +24,8 @@ vtkUnsignedCharArray* GetGhosts(vtkDataSetAttributes* attributes, vtkIdType coun
 class HiddenSamples
 {
 public:
+  /// Nothing is hidden.
+  HiddenSamples() = default;
   /**
    * A cell is hidden by its own flag (HIDDENCELL, REFINEDCELL) or by a hidden point, as VTK has it; a
    * point by its own (HIDDENPOINT), or because all of its cells are hidden.

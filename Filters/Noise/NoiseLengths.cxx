@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseLengths.h"
 
+#include "LengthOctaves.h"
 #include "NoiseArrays.h"
+#include "NoiseBlocks.h"
+#include "NoiseGhosts.h"
 #include "NoiseThreads.h"
 
 #include "vtkCommunicator.h"
@@ -14,7 +17,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace noise
 {
@@ -41,8 +43,8 @@ bool AnyFrom(const T* values, vtkIdType count, T least)
   }
   return false;
 }
-} // namespace
 
+/// Whether an array has a number so large that LengthOctaves can find a vector in it; quick.
 bool MayHoldFarAbove(vtkDataArray* array)
 {
   constexpr double least = steerable::LeastFillLength / 3.0; // 9 components of a tensor together
@@ -57,9 +59,17 @@ bool MayHoldFarAbove(vtkDataArray* array)
   return true;
 }
 
-void AddLengths(steerable::LengthOctaves& octaves, vtkDataArray* array,
-  const std::vector<unsigned char>& hidden, double limit)
+HiddenSamples HiddenOf(const LengthSource& source)
 {
+  return source.DataSet ? HiddenSamples(source.DataSet) : HiddenSamples();
+}
+
+/// Adds the lengths of the tuples that are at most `limit` long.
+void AddLengths(steerable::LengthOctaves& octaves, const LengthSource& source, double limit)
+{
+  vtkDataArray* array = source.Array;
+  const HiddenSamples hiddenSamples = HiddenOf(source);
+  const std::vector<unsigned char>& hidden = hiddenSamples.Get(source.Cells);
   constexpr vtkIdType chunkSize = 4096;
   vtkSMPThreadLocal<steerable::LengthOctaves> local;
   WithThreads(
@@ -93,9 +103,13 @@ void AddLengths(steerable::LengthOctaves& octaves, vtkDataArray* array,
     });
 }
 
-void Reduce(steerable::LengthOctaves& octaves, vtkMultiProcessController* controller)
+/// All ranks take part.
+void ReduceOctaves(steerable::LengthOctaves& octaves, vtkMultiProcessController* controller)
 {
-  constexpr auto count = static_cast<vtkIdType>(std::tuple_size<decltype(octaves.Octaves)>::value);
+  if (!controller || controller->GetNumberOfProcesses() < 2)
+  {
+    return;
+  }
   constexpr double none = std::numeric_limits<double>::infinity();
   std::vector<double> counts;
   std::vector<double> ends; // shortest ones, then negated longest ones
@@ -105,13 +119,79 @@ void Reduce(steerable::LengthOctaves& octaves, vtkMultiProcessController* contro
     ends.push_back(octave.Count > 0.0 ? octave.Least : none);
     ends.push_back(-octave.Longest);
   }
-  std::vector<double> sums(counts.size());
-  std::vector<double> least(ends.size());
-  controller->AllReduce(counts.data(), sums.data(), count, vtkCommunicator::SUM_OP);
-  controller->AllReduce(ends.data(), least.data(), 2 * count, vtkCommunicator::MIN_OP);
+  Reduce(controller, counts.data(), counts.size(), vtkCommunicator::SUM_OP);
+  Reduce(controller, ends.data(), ends.size(), vtkCommunicator::MIN_OP);
   for (std::size_t i = 0; i < octaves.Octaves.size(); ++i)
   {
-    octaves.Octaves[i] = { sums[i], least[2 * i], -least[2 * i + 1] };
+    octaves.Octaves[i] = { counts[i], ends[2 * i], -ends[2 * i + 1] };
   }
+}
+
+/// All ranks take part.
+bool AreAnyFar(const std::vector<LengthSource>& arrays, vtkMultiProcessController* controller)
+{
+  double any = std::any_of(arrays.begin(), arrays.end(),
+    [](const LengthSource& source) { return MayHoldFarAbove(source.Array); });
+  Reduce(controller, &any, 1, vtkCommunicator::MAX_OP);
+  return any != 0.0;
+}
+
+/// Largest component, by its amount, of the tuples longer than `rest`; all ranks take part.
+double FindFarValue(const std::vector<LengthSource>& arrays, double rest,
+  vtkMultiProcessController* controller)
+{
+  double ends[2] = { 0.0, 0.0 }; // up and down
+  for (const LengthSource& source : arrays)
+  {
+    const HiddenSamples hiddenSamples = HiddenOf(source);
+    const std::vector<unsigned char>& hidden = hiddenSamples.Get(source.Cells);
+    for (vtkIdType i = 0; i < source.Array->GetNumberOfTuples(); ++i)
+    {
+      double length;
+      ReadLengths(source.Array, static_cast<std::size_t>(i), 1, &length);
+      if (length > rest && std::isfinite(length) && (hidden.empty() || !hidden[i]))
+      {
+        const double value = GetLargestComponent(source.Array, i);
+        ends[0] = std::max(ends[0], value);
+        ends[1] = std::max(ends[1], -value);
+      }
+    }
+  }
+  Reduce(controller, ends, 2, vtkCommunicator::MAX_OP);
+  return ends[0] >= ends[1] ? ends[0] : -ends[1];
+}
+} // namespace
+
+//------------------------------------------------------------------------------
+LengthRange FindLengths(const std::vector<LengthSource>& arrays, double upperThreshold,
+  vtkMultiProcessController* controller, bool longest)
+{
+  LengthRange range;
+  range.Limit = upperThreshold > 0.0 ? upperThreshold : range.Limit;
+  if (!longest && (upperThreshold > 0.0 || !AreAnyFar(arrays, controller)))
+  {
+    return range; // nobody asks
+  }
+  steerable::LengthOctaves octaves;
+  for (const LengthSource& source : arrays)
+  {
+    AddLengths(octaves, source, range.Limit);
+  }
+  ReduceOctaves(octaves, controller);
+  if (upperThreshold <= 0.0)
+  {
+    const steerable::FarAbove farAbove = octaves.FindFarAbove();
+    range.FarCount = farAbove.Count;
+    range.FarLongest = farAbove.Longest;
+    range.FarRest = farAbove.Rest;
+    if (farAbove.Fill)
+    {
+      range.Limit = farAbove.Rest;
+      range.Fills = farAbove.Count;
+    }
+    range.FarValue = farAbove.Count > 0.0 ? FindFarValue(arrays, farAbove.Rest, controller) : 0.0;
+  }
+  range.Longest = octaves.GetLongest(range.Limit);
+  return range;
 }
 } // namespace noise

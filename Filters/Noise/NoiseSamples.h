@@ -12,6 +12,7 @@
 #include "NoiseGhosts.h"
 #include "NoiseShape.h"
 
+#include "vtkFloatArray.h"
 #include "vtkSmartPointer.h"
 
 #include <Eigen/Core>
@@ -23,7 +24,6 @@
 
 class vtkDataArray;
 class vtkDataSet;
-class vtkFloatArray;
 class vtkImageData;
 
 namespace noise

@@ -3,11 +3,11 @@
 #include "NoiseShape.h"
 
 #include "DatasetCells.h"
+#include "NoiseBlocks.h"
 
 #include "vtkCommunicator.h"
 #include "vtkImageData.h"
 #include "vtkMatrix3x3.h"
-#include "vtkMultiProcessController.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"
 
@@ -111,12 +111,7 @@ void CommonShape::Add(vtkDataSet* dataset, bool cells, const int* wholeExtent)
 
 void CommonShape::Reduce(vtkMultiProcessController* controller)
 {
-  if (controller && controller->GetNumberOfProcesses() > 1)
-  {
-    double here[Count];
-    std::copy_n(this->Facts, int(Count), here);
-    controller->AllReduce(here, this->Facts, Count, vtkCommunicator::MAX_OP);
-  }
+  noise::Reduce(controller, this->Facts, Count, vtkCommunicator::MAX_OP);
 }
 
 bool CommonShape::IsFlat() const

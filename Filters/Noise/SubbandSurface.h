@@ -7,7 +7,7 @@
 #ifndef SubbandSurface_h
 #define SubbandSurface_h
 
-#include "SurfaceMetric.h"
+#include "Subband/SurfaceMetric.h"
 
 #include "vtkType.h"
 

@@ -6,7 +6,6 @@
 #include "DatasetCells.h"
 #include "NoiseArrays.h"
 #include "NoiseGhosts.h"
-#include "NoiseLengths.h"
 #include "NoiseSamples.h"
 #include "NoiseThreads.h"
 #include "PointPlaces.h"
@@ -18,7 +17,6 @@
 #include "vtkIdList.h"
 #include "vtkInformation.h"
 #include "vtkMath.h"
-#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -168,31 +166,6 @@ void MarkNotFinite(vtkFloatArray* array)
     SurfaceFields::NotFinite);
 }
 } // namespace
-
-LengthRange FindLengths(const std::vector<vtkDataArray*>& arrays, double upperThreshold,
-  vtkMultiProcessController* controller)
-{
-  LengthRange range;
-  range.Limit = upperThreshold > 0.0 ? upperThreshold : range.Limit;
-  steerable::LengthOctaves lengths;
-  for (vtkDataArray* array : arrays)
-  {
-    AddLengths(lengths, array, {}, range.Limit);
-  }
-  if (controller && controller->GetNumberOfProcesses() > 1)
-  {
-    Reduce(lengths, controller);
-  }
-  const steerable::FarAbove farAbove =
-    upperThreshold > 0.0 ? steerable::FarAbove() : lengths.FindFarAbove();
-  if (farAbove.Fill)
-  {
-    range.Limit = farAbove.Rest;
-    range.Fills = farAbove.Count;
-  }
-  range.Longest = lengths.GetLongest(range.Limit);
-  return range;
-}
 
 SurfaceFields ComputeSurfaceFields(
   vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell, double limit)

@@ -14,12 +14,10 @@
 
 #include <limits>
 #include <string>
-#include <vector>
 
 class vtkDataArray;
 class vtkDataSet;
 class vtkInformation;
-class vtkMultiProcessController;
 class vtkPolyData;
 
 namespace noise
@@ -53,24 +51,6 @@ struct SurfaceFields
 STEERABLENOISEFILTERS_EXPORT SurfaceFields ComputeSurfaceFields(
   vtkPolyData* surface, vtkDataArray* array, bool cells, bool perCell,
   double limit = std::numeric_limits<double>::infinity());
-
-/// How long the tuples of some arrays are (Frobenius norm of tensors).
-struct LengthRange
-{
-  /// Of those that count; 0 where there is none.
-  double Longest = 0.0;
-  /// Longer tuples do not count; infinite: all do.
-  double Limit = std::numeric_limits<double>::infinity();
-  /// Tuples that were taken for fill values, by the rule of vtkSteerableNoiseFilter.
-  double Fills = 0.0;
-};
-
-/**
- * Of arrays with 2, 3, 4, 6 or 9 components, and of those of the other ranks of `controller`, which may be null.
- * `upperThreshold`: the limit; 0: fill values are found and left out.
- */
-STEERABLENOISEFILTERS_EXPORT LengthRange FindLengths(const std::vector<vtkDataArray*>& arrays,
-  double upperThreshold, vtkMultiProcessController* controller);
 
 /**
  * The FeatureSize that vtkSteerableNoiseFilter takes by itself, in world units, for data with these bounds over all

@@ -5,8 +5,8 @@
 #include "NoiseArrays.h"
 #include "NoiseErrors.h"
 #include "NoiseThreads.h"
+#include "Subband/SubbandTiles.h"
 #include "SubbandNames.h"
-#include "SubbandTiles.h"
 
 #include "vtkDataObject.h"
 #include "vtkFloatArray.h"

@@ -3,8 +3,8 @@
 #include "vtkImageSubbandNoiseSource.h"
 
 #include "NoiseErrors.h"
+#include "Subband/SubbandTiles.h"
 #include "SubbandNames.h"
-#include "SubbandTiles.h"
 
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"

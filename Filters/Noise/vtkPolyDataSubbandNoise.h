@@ -348,7 +348,7 @@ private:
   vtkPolyDataSubbandNoise(const vtkPolyDataSubbandNoise&) = delete;
   void operator=(const vtkPolyDataSubbandNoise&) = delete;
 
-  struct Agreement;
+  struct Execution;
   struct Internals;
   Internals* Cache; // tiles and weights, kept while their parameters stand
 };

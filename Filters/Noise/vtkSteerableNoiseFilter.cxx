@@ -5,18 +5,18 @@
 #include "KeptByInput.h"
 #include "MetricTensor.h"
 #include "NoiseArrays.h"
-#include "NoiseBounds.h"
+#include "NoiseBlocks.h"
 #include "NoiseErrors.h"
 #include "NoiseGhosts.h"
 #include "NoiseImages.h"
 #include "NoiseLengths.h"
 #include "NoiseSamples.h"
+#include "NoiseSizes.h"
 #include "NoiseThreads.h"
 #include "SurfaceFields.h"
 
 #include "vtkCellData.h"
 #include "vtkCommunicator.h"
-#include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -37,7 +37,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -73,93 +72,12 @@ struct Block
   }
 };
 
-/// What the ranks have to agree on; all of it combines by minimum or sum.
-struct Extremes
-{
-  noise::CommonBounds Bounds;
-  noise::SampleSpacing Spacing;
-
-  /// `exact`: the spacing decides more than a warning.
-  void Add(const Block& block, bool exact)
-  {
-    const noise::HiddenSamples hidden(block.DataSet);
-    this->Bounds.Add(block.DataSet, hidden);
-    this->Spacing.Add(block.DataSet, block.Cells, block.Shape.Slab, hidden, exact ? 1000000 : 10000);
-  }
-
-  void Add(const Extremes& other)
-  {
-    this->Bounds.Add(other.Bounds);
-    this->Spacing.Add(other.Spacing);
-  }
-
-  void Reduce(vtkMultiProcessController* controller)
-  {
-    this->Bounds.Reduce(controller);
-    if (!controller || controller->GetNumberOfProcesses() < 2)
-    {
-      return;
-    }
-    double least[3];
-    std::transform(this->Spacing.Largest, this->Spacing.Largest + 3, least, std::negate<>());
-    double all[3];
-    controller->AllReduce(least, all, 3, vtkCommunicator::MIN_OP);
-    std::transform(all, all + 3, this->Spacing.Largest, std::negate<>());
-    double sums[4];
-    std::copy_n(this->Spacing.Sum, 3, sums);
-    sums[3] = this->Spacing.Count;
-    double total[4];
-    controller->AllReduce(sums, total, 4, vtkCommunicator::SUM_OP);
-    std::copy_n(total, 3, this->Spacing.Sum);
-    this->Spacing.Count = total[3];
-  }
-
-  /**
-   * The largest of the distances of neighbours along the axes, of those along which 4 fit into the largest
-   * size or that are at most twice the smallest. Means have three digits, so that the order of their sums
-   * over ranks does not show.
-   */
-  double GetSampleSpacing() const
-  {
-    double spacing[3];
-    double smallest = std::numeric_limits<double>::infinity();
-    const double longest = this->Bounds.GetLongestSide();
-    for (int axis = 0; axis < 3; ++axis)
-    {
-      double mean = this->Spacing.Count > 0.0 ? this->Spacing.Sum[axis] / this->Spacing.Count : 0.0;
-      if (mean > 0.0)
-      {
-        const double unit = std::pow(10.0, std::floor(std::log10(mean)) - 2.0);
-        mean = std::round(mean / unit) * unit;
-      }
-      spacing[axis] = std::max(mean, this->Spacing.Largest[axis]);
-      if (spacing[axis] > 0.0 && this->Bounds.GetSide(axis) > 1e-4 * longest)
-      {
-        smallest = std::min(smallest, spacing[axis]);
-      }
-    }
-    const double most = std::max(0.25 * this->Bounds.GetLargestSize(), 2.0 * smallest);
-    double largest = 0.0;
-    for (const double here : spacing)
-    {
-      largest = here <= most ? std::max(largest, here) : largest;
-    }
-    return largest;
-  }
-
-  /// The smallest FeatureSize that the samples carry; 0 if they are nowhere.
-  double GetSmallestSize() const
-  {
-    return noise::GetSmallestFeatureSize(this->GetSampleSpacing());
-  }
-};
-
 /// What was found out about a dataset of the input, good as long as what it depends on is the same.
 struct KeptBlock
 {
-  bool AreExtremesKnown = false;
-  bool AreExtremesExact = false;
-  Extremes Own;
+  bool AreSizesKnown = false;
+  bool AreSizesExact = false;
+  noise::CommonSizes Sizes;
 
   /// The array is only compared, never used: it may be gone.
   const vtkDataArray* Array = nullptr;
@@ -167,16 +85,16 @@ struct KeptBlock
   double Limit = 0.0;
   noise::SampleFields Fields;
 
-  const Extremes& GetExtremes(const Block& block, bool exact)
+  const noise::CommonSizes& GetSizes(const Block& block, bool exact)
   {
-    if (!this->AreExtremesKnown || this->AreExtremesExact != exact)
+    if (!this->AreSizesKnown || this->AreSizesExact != exact)
     {
-      this->Own = Extremes();
-      this->Own.Add(block, exact);
-      this->AreExtremesKnown = true;
-      this->AreExtremesExact = exact;
+      this->Sizes = noise::CommonSizes();
+      this->Sizes.Add(block.DataSet, block.Cells, block.Shape.Slab, exact);
+      this->AreSizesKnown = true;
+      this->AreSizesExact = exact;
     }
-    return this->Own;
+    return this->Sizes;
   }
 
   noise::SampleFields* GetFields(const Block& block, const noise::Plane& plane, double limit)
@@ -213,6 +131,28 @@ bool IsSteady(vtkInformation* info, double& only)
     return only == info->Get(SDDP::TIME_RANGE(), 1);
   }
   return true;
+}
+
+/// That the output is asked for; 0 if none is.
+double GetTime(vtkInformation* outInfo)
+{
+  using SDDP = vtkStreamingDemandDrivenPipeline;
+  return outInfo->Has(SDDP::UPDATE_TIME_STEP()) ? outInfo->Get(SDDP::UPDATE_TIME_STEP()) : 0.0;
+}
+
+/// Those of the input, which may be one.
+std::vector<vtkImageData*> GetImages(vtkDataObject* input)
+{
+  std::vector<vtkImageData*> images;
+  noise::VisitBlocks(input,
+    [&](vtkDataObject* leaf)
+    {
+      if (auto* image = vtkImageData::SafeDownCast(leaf))
+      {
+        images.push_back(image);
+      }
+    });
+  return images;
 }
 
 constexpr const char* HyperTreeGridMessage =
@@ -280,90 +220,6 @@ vtkIdType CountBadPlaces(vtkDataSet* dataset)
   }
   return count;
 }
-
-/// How long the vectors of all blocks and ranks are, and which of them are left out.
-struct Lengths
-{
-  /// Longer ones are left out; infinite: none is.
-  double Limit;
-  /// The longest of the others, where it was asked for.
-  double Longest = 0.0;
-  steerable::FarAbove FarAbove;
-  /// Their component of the largest amount.
-  double FarValue = 0.0;
-
-  /// `limit`: MaskUpperThreshold, 0 where fill values are to be found.
-  Lengths(const std::vector<Block>& blocks, bool longest, double limit,
-    vtkMultiProcessController* controller)
-    : Limit(limit > 0.0 ? limit : std::numeric_limits<double>::infinity())
-    , Controller(controller && controller->GetNumberOfProcesses() > 1 ? controller : nullptr)
-  {
-    if (!longest && (limit > 0.0 || !this->AreAnyFar(blocks)))
-    {
-      return; // nobody asks
-    }
-    steerable::LengthOctaves octaves;
-    for (const Block& block : blocks)
-    {
-      const noise::HiddenSamples hidden(block.GetOriginal());
-      noise::AddLengths(octaves, block.GetOriginalArray(), hidden.Get(block.Cells), this->Limit);
-    }
-    if (this->Controller)
-    {
-      noise::Reduce(octaves, this->Controller);
-    }
-    if (limit <= 0.0)
-    {
-      this->FarAbove = octaves.FindFarAbove();
-      this->Limit = this->FarAbove.Fill ? this->FarAbove.Rest : this->Limit;
-      this->FarValue = this->FarAbove.Count > 0.0 ? this->FindFarValue(blocks) : 0.0;
-    }
-    this->Longest = octaves.GetLongest(this->Limit);
-  }
-
-private:
-  bool AreAnyFar(const std::vector<Block>& blocks) const
-  {
-    int any = std::any_of(blocks.begin(), blocks.end(),
-      [](const Block& block) { return noise::MayHoldFarAbove(block.GetOriginalArray()); });
-    if (this->Controller)
-    {
-      const int here = any;
-      this->Controller->AllReduce(&here, &any, 1, vtkCommunicator::MAX_OP);
-    }
-    return any != 0;
-  }
-
-  double FindFarValue(const std::vector<Block>& blocks) const
-  {
-    double ends[2] = { 0.0, 0.0 }; // up and down
-    for (const Block& block : blocks)
-    {
-      vtkDataArray* array = block.GetOriginalArray();
-      const noise::HiddenSamples hidden(block.GetOriginal());
-      const std::vector<unsigned char>& left = hidden.Get(block.Cells);
-      for (vtkIdType i = 0; i < array->GetNumberOfTuples(); ++i)
-      {
-        double length;
-        noise::ReadLengths(array, static_cast<std::size_t>(i), 1, &length);
-        if (length > this->FarAbove.Rest && std::isfinite(length) && (left.empty() || !left[i]))
-        {
-          const double value = noise::GetLargestComponent(array, i);
-          ends[0] = std::max(ends[0], value);
-          ends[1] = std::max(ends[1], -value);
-        }
-      }
-    }
-    if (this->Controller)
-    {
-      const double here[2] = { ends[0], ends[1] };
-      this->Controller->AllReduce(here, ends, 2, vtkCommunicator::MAX_OP);
-    }
-    return ends[0] >= ends[1] ? ends[0] : -ends[1];
-  }
-
-  vtkMultiProcessController* Controller;
-};
 } // namespace
 
 /// By whether samples are in cells, and the slab that they are taken in.
@@ -372,12 +228,24 @@ struct vtkSteerableNoiseFilter::KeptBlocks
   noise::KeptByInput<KeptBlock, std::pair<bool, int>> Blocks;
 };
 
-struct vtkSteerableNoiseFilter::Internals
+/// One execution, in the order of RequestData.
+struct vtkSteerableNoiseFilter::Execution
 {
-  vtkSteerableNoiseFilter* Self = nullptr;
+  vtkSteerableNoiseFilter* Self;
+  vtkInformation* OutInfo;
+  steerable::NoiseParameters Parameters;
+  std::vector<Block> Blocks;
+  bool IsComposite = false;
+  /// Extent of what a piece is one of; empty: the input is all there is.
+  std::vector<int> WholeExtent;
+  noise::CommonSizes Sizes;
+  noise::LengthRange Lengths;
+  /// Why this rank cannot go on; empty: it can.
+  std::string Failure;
+
   steerable::EvaluationCounts Counts;
   vtkIdType Samples = 0;
-  /// Of all ranks.
+  /// Of all ranks: degenerate ones, and all.
   double AllDegenerate = 0.0;
   double AllSamples = 0.0;
   vtkIdType TooLong = 0;
@@ -387,6 +255,18 @@ struct vtkSteerableNoiseFilter::Internals
   vtkIdType ImagesAsTheyAre = 0;
   /// Why the last of them could not be used.
   std::string Why;
+
+  Execution(vtkSteerableNoiseFilter* self, vtkInformation* outInfo)
+    : Self(self)
+    , OutInfo(outInfo)
+    , Parameters(this->GetParameters(GetTime(outInfo)))
+  {
+  }
+
+  const int* GetWholeExtent() const
+  {
+    return this->WholeExtent.empty() ? nullptr : this->WholeExtent.data();
+  }
 
   steerable::NoiseParameters GetParameters(double time) const
   {
@@ -401,13 +281,13 @@ struct vtkSteerableNoiseFilter::Internals
     p.AnisotropicWeight = f.AnisotropicWeight;
     p.MetricInProjection = f.MetricInProjection;
     p.Strength = f.Strength;
-    p.StrengthBy = f.IsSteered() ? static_cast<steerable::StrengthMode>(f.StrengthMode)
+    p.StrengthMode = f.IsSteered() ? static_cast<steerable::StrengthMode>(f.StrengthMode)
                                  : steerable::StrengthMode::Constant;
     p.ReferenceMagnitude = f.ReferenceMagnitude;
     p.MaskThreshold = f.MaskThreshold;
     p.FollowCurvature = f.FollowCurvature;
-    p.Normalize = static_cast<steerable::Normalization>(f.Normalization);
-    p.Surflet = static_cast<steerable::Basis>(f.Basis);
+    p.Normalization = static_cast<steerable::Normalization>(f.Normalization);
+    p.Basis = static_cast<steerable::Basis>(f.Basis);
     p.Density = f.Density;
     p.Motion = f.Animate || f.Phase != 0.0 || f.TimePeriod > 0.0;
     p.Phase = f.Phase + (f.TimePeriod > 0.0 ? time / f.TimePeriod : 0.0);
@@ -416,10 +296,10 @@ struct vtkSteerableNoiseFilter::Internals
     p.Lacunarity = f.Lacunarity;
     p.Gain = f.Gain;
     p.Turbulence = f.Turbulence;
-    p.Interpolant = static_cast<steerable::Fade>(f.Fade);
-    p.Window = static_cast<steerable::Falloff>(f.Falloff);
-    p.Grid = static_cast<steerable::Lattice>(f.Lattice);
-    p.Gradients = static_cast<steerable::GradientSet>(f.GradientSet);
+    p.Fade = static_cast<steerable::Fade>(f.Fade);
+    p.Falloff = static_cast<steerable::Falloff>(f.Falloff);
+    p.Lattice = static_cast<steerable::Lattice>(f.Lattice);
+    p.GradientSet = static_cast<steerable::GradientSet>(f.GradientSet);
     p.Period = { f.Period[0], f.Period[1], f.Period[2] };
     p.Seed = static_cast<std::uint32_t>(f.Seed);
     if (f.Model == MODEL_PERLIN)
@@ -428,9 +308,100 @@ struct vtkSteerableNoiseFilter::Internals
       p.Quality = 0;
       p.AnisotropicWeight = false;
       p.MetricInProjection = false;
-      p.Normalize = steerable::Normalization::None;
+      p.Normalization = steerable::Normalization::None;
     }
     return p;
+  }
+
+  /**
+   * Makes the output: shallow copies of the input's datasets, so that arrays can be added, and magnified
+   * images.
+   */
+  void CollectBlocks(vtkDataObject* input, vtkDataObject* output)
+  {
+    this->IsComposite = output->IsA("vtkCompositeDataSet");
+    // The levels of an AMR say how fine its images are.
+    const bool isAMR = output->IsA("vtkUniformGridAMR");
+    const int magnification = this->Self->ResolvedMagnification;
+    if (magnification > 1 && !isAMR)
+    {
+      noise::Attempt(this->Failure, [&] { noise::CheckMemory(GetImages(input), magnification); });
+    }
+    noise::CopyBlocks(input, output,
+      [&](vtkDataObject* copy, vtkDataObject* source)
+      {
+        auto* image = vtkImageData::SafeDownCast(source);
+        const bool finer = image && magnification > 1 && !isAMR && this->Failure.empty();
+        if (finer)
+        {
+          noise::Attempt(this->Failure, [&] { this->Magnify(image, vtkImageData::SafeDownCast(copy)); });
+        }
+        else
+        {
+          copy->ShallowCopy(source);
+        }
+        this->ImagesAsTheyAre += image && isAMR && magnification > 1;
+        if (auto* dataset = vtkDataSet::SafeDownCast(copy))
+        {
+          this->AddBlock(dataset, source, finer ? image : nullptr);
+        }
+        else if (copy->IsA("vtkHyperTreeGrid"))
+        {
+          ++this->BlocksWithout;
+          this->Why = HyperTreeGridMessage;
+        }
+      });
+    using SDDP = vtkStreamingDemandDrivenPipeline;
+    if (!this->IsComposite && this->OutInfo->Has(SDDP::WHOLE_EXTENT()))
+    {
+      this->WholeExtent.resize(6);
+      this->OutInfo->Get(SDDP::WHOLE_EXTENT(), this->WholeExtent.data());
+    }
+    if (this->IsComposite && this->Blocks.empty() && this->BlocksWithout > 0 &&
+      !this->Self->Controller && this->Failure.empty())
+    {
+      this->Failure = this->Why;
+    }
+  }
+
+  void Magnify(vtkImageData* image, vtkImageData* copy) const
+  {
+    int extent[6];
+    if (!this->IsComposite)
+    {
+      this->OutInfo->Get(vtkStreamingDemandDrivenPipeline::UPDATE_EXTENT(), extent);
+    }
+    noise::Magnify(
+      image, copy, this->IsComposite ? nullptr : extent, this->Self->ResolvedMagnification);
+  }
+
+  /// `original`: what `dataset` was magnified from, or null.
+  void AddBlock(vtkDataSet* dataset, vtkDataObject* source, vtkDataSet* original)
+  {
+    Block block;
+    block.DataSet = dataset;
+    block.Source = original ? dataset : source;
+    std::string why;
+    if (this->FindArray(block, why))
+    {
+      Block coarse;
+      coarse.DataSet = original;
+      if (original && this->FindArray(coarse, why) && coarse.Cells == block.Cells)
+      {
+        block.Original = original;
+        block.OriginalArray = coarse.Array;
+      }
+      this->Blocks.push_back(block);
+    }
+    else if (dataset->GetNumberOfPoints() > 0)
+    {
+      this->Why = why;
+      ++this->BlocksWithout;
+      if (!this->IsComposite && this->Failure.empty())
+      {
+        this->Failure = why;
+      }
+    }
   }
 
   /// Finds the array of a block, if anything steers; false with `why` where there is none that can be used.
@@ -482,10 +453,76 @@ struct vtkSteerableNoiseFilter::Internals
     return true;
   }
 
-  void Process(const Block& block, steerable::NoiseParameters parameters,
-    const noise::Plane& plane, double limit, int magnification,
-    double progressStart, double progressShare)
+  bool NeedsMagnitude() const
   {
+    return this->Self->IsSteered() && this->Self->StrengthMode == MAGNITUDE &&
+      this->Self->ReferenceMagnitude <= 0.0;
+  }
+
+  /// What ranks do together comes before anything that may fail on one of them.
+  void AgreeAcrossRanks()
+  {
+    noise::CommonShape shape;
+    for (const Block& block : this->Blocks)
+    {
+      shape.Add(block.DataSet, block.Cells, this->GetWholeExtent());
+    }
+    shape.Reduce(this->Self->Controller);
+    for (Block& block : this->Blocks)
+    {
+      block.Shape = shape.Get(block.DataSet, block.Cells, this->GetWholeExtent());
+    }
+    this->Self->Kept->Blocks.Assign(this->Blocks,
+      [](const Block& block) { return std::make_pair(block.Cells, block.Shape.Slab); });
+    std::vector<noise::LengthSource> arrays;
+    for (const Block& block : this->Blocks)
+    {
+      this->Sizes.Add(block.Known->GetSizes(block, this->Self->FeatureSize == 0.0));
+      if (this->Self->IsSteered())
+      {
+        arrays.push_back({ block.GetOriginalArray(), block.GetOriginal(), block.Cells });
+      }
+    }
+    this->Sizes.Reduce(this->Self->Controller);
+    this->Lengths = noise::FindLengths(
+      arrays, this->Self->MaskUpperThreshold, this->Self->Controller, this->NeedsMagnitude());
+  }
+
+  /// Automatic values.
+  void Resolve()
+  {
+    if (this->Self->FeatureSize == 0.0)
+    {
+      this->Parameters.FeatureSize = this->Sizes.GetFeatureSize();
+    }
+    if (this->NeedsMagnitude())
+    {
+      this->Parameters.ReferenceMagnitude =
+        this->Lengths.Longest > 0.0 ? this->Lengths.Longest : 1.0;
+    }
+    this->Self->ResolvedFeatureSize = this->Parameters.FeatureSize;
+  }
+
+  void Evaluate()
+  {
+    const double share = 1.0 / static_cast<double>(this->Blocks.size());
+    noise::Attempt(this->Failure,
+      [&]
+      {
+        for (std::size_t i = 0; i < this->Blocks.size() && !this->Self->GetAbortOutput(); ++i)
+        {
+          this->EvaluateBlock(this->Blocks[i],
+            static_cast<double>(i) / static_cast<double>(this->Blocks.size()), share);
+        }
+      });
+  }
+
+  void EvaluateBlock(const Block& block, double progressStart, double progressShare)
+  {
+    steerable::NoiseParameters parameters = this->Parameters;
+    const noise::Plane plane = this->Sizes.Bounds.GetPlane();
+    const double limit = this->Lengths.Limit;
+    const int magnification = block.Original ? this->Self->ResolvedMagnification : 1;
     noise::Samples samples(
       block.DataSet, block.Array, block.Cells, block.Shape, magnification, plane, limit,
       block.Known->GetFields(block, plane, limit));
@@ -607,44 +644,38 @@ struct vtkSteerableNoiseFilter::Internals
       });
   }
 
-  /// All ranks of the controller take part.
-  void ShareCounts(vtkMultiProcessController* controller)
+  /// All ranks take part, after all have tried.
+  void ShareCounts()
   {
-    if (controller && controller->GetNumberOfProcesses() > 1)
-    {
-      const double here[2] = { static_cast<double>(this->Counts.Degenerate), static_cast<double>(this->Samples) };
-      double all[2];
-      controller->AllReduce(here, all, 2, vtkCommunicator::SUM_OP);
-      this->AllDegenerate = all[0];
-      this->AllSamples = all[1];
-    }
-    else
-    {
-      this->AllDegenerate = static_cast<double>(this->Counts.Degenerate);
-      this->AllSamples = static_cast<double>(this->Samples);
-    }
+    double all[2] = { static_cast<double>(this->Counts.Degenerate),
+      static_cast<double>(this->Samples) };
+    noise::Reduce(this->Self->Controller, all, 2, vtkCommunicator::SUM_OP);
+    this->AllDegenerate = all[0];
+    this->AllSamples = all[1];
   }
 
-  void Report(const Extremes& extremes, const Lengths& lengths, const steerable::NoiseParameters& parameters, bool composite)
+  /// One warning that says everything.
+  void Report() const
   {
+    const steerable::NoiseParameters& parameters = this->Parameters;
+    const noise::LengthRange& lengths = this->Lengths;
     std::ostringstream message;
-    const steerable::FarAbove& farAbove = lengths.FarAbove;
-    if (farAbove.Fill && this->TooLong > 0)
+    if (lengths.Fills > 0.0 && this->TooLong > 0)
     {
       message << "\n"
               << this->TooLong << " samples hold " << lengths.FarValue
-              << ", far more than all others (the longest vector is " << farAbove.Longest
-              << ", the next " << farAbove.Rest
+              << ", far more than all others (the longest vector is " << lengths.FarLongest
+              << ", the next " << lengths.FarRest
               << "), as values do that stand for missing ones: they got 0 and count for nothing. "
                  "MaskUpperThreshold sets the limit by hand; 1e300 takes all of them.";
     }
-    else if (!farAbove.Fill && farAbove.Count > 0.0)
+    else if (lengths.Fills == 0.0 && lengths.FarCount > 0.0)
     {
       message << "\n"
-              << farAbove.Count << " vectors are far longer than all others: with components up to "
-              << lengths.FarValue << ", " << farAbove.Longest << " long, the next " << farAbove.Rest
+              << lengths.FarCount << " vectors are far longer than all others: with components up to "
+              << lengths.FarValue << ", " << lengths.FarLongest << " long, the next " << lengths.FarRest
               << ". If they stand for missing values, set MaskUpperThreshold "
-              << 2.0 * farAbove.Rest << ".";
+              << 2.0 * lengths.FarRest << ".";
     }
     if (this->Counts.Bounded > 0)
     {
@@ -669,7 +700,7 @@ struct vtkSteerableNoiseFilter::Internals
               << this->BadPlaces
               << " points have coordinates that are not finite: noise at them and beside them means nothing. Clean the mesh.";
     }
-    if (composite && this->BlocksWithout > 0)
+    if (this->IsComposite && this->BlocksWithout > 0)
     {
       message << "\n"
               << this->BlocksWithout
@@ -681,12 +712,12 @@ struct vtkSteerableNoiseFilter::Internals
               << " images of an AMR as they are: its levels say how fine they are. Resample to Image, or "
                  "Extract Level and Merge Blocks, first.";
     }
-    const double smallest = extremes.GetSmallestSize();
+    const double smallest = this->Sizes.GetSmallestSize();
     const double finest =
       parameters.FeatureSize / std::pow(parameters.Lacunarity, parameters.Octaves - 1);
     if (finest < 0.999 * smallest)
     {
-      message << "\nThe samples are " << extremes.GetSampleSpacing()
+      message << "\nThe samples are " << this->Sizes.GetSampleSpacing()
               << " apart, too far for noise of FeatureSize " << finest
               << ". Set FeatureSize to at least " << smallest
               << ", refine the data (Magnification on images, Resample to Image, Subdivide), or show them as "
@@ -847,11 +878,6 @@ int vtkSteerableNoiseFilter::RequestData(
   vtkDataObject* output = vtkDataObject::GetData(outInfo);
   using SDDP = vtkStreamingDemandDrivenPipeline;
 
-  double time = 0.0;
-  if (outInfo->Has(SDDP::UPDATE_TIME_STEP()))
-  {
-    time = outInfo->Get(SDDP::UPDATE_TIME_STEP());
-  }
   const auto refuse = [&](const std::string& why) { return noise::Refuse(this, output, why); };
   if (!this->ResultArrayName || !*this->ResultArrayName)
   {
@@ -863,212 +889,45 @@ int vtkSteerableNoiseFilter::RequestData(
     return refuse(HyperTreeGridMessage);
   }
 
-  // On every way out.
-  const auto drop = [this](KeptBlocks* kept)
-  {
-    if (!this->KeepFields)
+  const noise::AtEnd forget(
+    [this]
     {
-      kept->Blocks.Clear();
-    }
-  };
-  const std::unique_ptr<KeptBlocks, decltype(drop)> dropUnlessKept(this->Kept.get(), drop);
+      if (!this->KeepFields)
+      {
+        this->Kept->Blocks.Clear();
+      }
+    });
 
-  Internals internals;
-  internals.Self = this;
-  std::vector<Block> blocks;
-  bool failed = false;
-  // `original`: what `dataset` was magnified from, or null.
-  const auto addBlock = [&](vtkDataSet* dataset, vtkDataObject* source, vtkDataSet* original, bool required)
+  Execution run(this, outInfo);
+  run.CollectBlocks(input, output);
+  run.AgreeAcrossRanks();
+  run.Resolve();
+  if (run.Failure.empty() && !run.Blocks.empty())
   {
-    Block block;
-    block.DataSet = dataset;
-    block.Source = original ? dataset : source;
-    std::string why;
-    if (internals.FindArray(block, why))
-    {
-      Block coarse;
-      coarse.DataSet = original;
-      if (original && internals.FindArray(coarse, why) && coarse.Cells == block.Cells)
-      {
-        block.Original = original;
-        block.OriginalArray = coarse.Array;
-      }
-      blocks.push_back(block);
-    }
-    else if (dataset->GetNumberOfPoints() > 0)
-    {
-      internals.Why = failed ? internals.Why : why;
-      failed = failed || required;
-      ++internals.BlocksWithout;
-    }
-  };
-
-  // The output: shallow copies of the input's datasets, so that arrays can be added.
-  vtkCompositeDataSet* composite = vtkCompositeDataSet::SafeDownCast(output);
-  int wholeExtent[6];
-  const int* whole = nullptr;
-  if (composite)
-  {
-    auto* inputs = vtkCompositeDataSet::SafeDownCast(input);
-    composite->CopyStructure(inputs);
-    composite->GetFieldData()->PassData(inputs->GetFieldData());
-    auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(inputs->NewIterator());
-    // The levels of an AMR say how fine its images are.
-    const bool isAMR = composite->IsA("vtkUniformGridAMR");
-    const bool magnify = this->ResolvedMagnification > 1 && !isAMR;
-    try
-    {
-      std::vector<vtkImageData*> images;
-      for (iterator->InitTraversal(); magnify && !iterator->IsDoneWithTraversal();
-           iterator->GoToNextItem())
-      {
-        if (auto* image = vtkImageData::SafeDownCast(iterator->GetCurrentDataObject()))
-        {
-          images.push_back(image);
-        }
-      }
-      noise::CheckMemory(images, this->ResolvedMagnification);
-    }
-    catch (const std::exception& error)
-    {
-      // Not before the others know: they wait for this rank.
-      internals.Why = error.what();
-      failed = true;
-    }
-    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
-    {
-      vtkDataObject* leaf = iterator->GetCurrentDataObject();
-      auto copy = vtkSmartPointer<vtkDataObject>::Take(leaf->NewInstance());
-      auto* image = vtkImageData::SafeDownCast(leaf);
-      const bool finer = image && magnify && !failed;
-      if (finer)
-      {
-        noise::Magnify(image, vtkImageData::SafeDownCast(copy), nullptr, this->ResolvedMagnification);
-      }
-      else
-      {
-        copy->ShallowCopy(leaf);
-      }
-      internals.ImagesAsTheyAre += image && isAMR && this->ResolvedMagnification > 1;
-      composite->SetDataSet(iterator, copy);
-      if (auto* dataset = vtkDataSet::SafeDownCast(copy))
-      {
-        addBlock(dataset, leaf, finer ? image : nullptr, false);
-      }
-      else if (copy->IsA("vtkHyperTreeGrid"))
-      {
-        ++internals.BlocksWithout;
-        internals.Why = HyperTreeGridMessage;
-      }
-    }
-    failed = failed || (blocks.empty() && internals.BlocksWithout > 0 && !this->Controller);
+    run.Evaluate();
   }
-  else
+  run.ShareCounts();
+  if (!run.Failure.empty())
   {
-    auto* dataset = vtkDataSet::SafeDownCast(output);
-    auto* image = vtkImageData::SafeDownCast(input);
-    const bool magnify = image && this->ResolvedMagnification > 1;
-    if (magnify)
-    {
-      try
-      {
-        int extent[6];
-        outInfo->Get(SDDP::UPDATE_EXTENT(), extent);
-        noise::CheckMemory({ image }, this->ResolvedMagnification);
-        noise::Magnify(image, vtkImageData::SafeDownCast(output), extent, this->ResolvedMagnification);
-      }
-      catch (const std::exception& error)
-      {
-        return refuse(error.what());
-      }
-    }
-    else
-    {
-      dataset->ShallowCopy(input);
-    }
-    if (outInfo->Has(SDDP::WHOLE_EXTENT()))
-    {
-      outInfo->Get(SDDP::WHOLE_EXTENT(), wholeExtent);
-      whole = wholeExtent;
-    }
-    addBlock(dataset, input, magnify ? image : nullptr, true);
+    return refuse(run.Failure);
   }
-
-  // What ranks do together comes before anything that may fail on one of them, and the counts after all have tried.
-  steerable::NoiseParameters parameters = internals.GetParameters(time);
-  noise::CommonShape shape;
-  for (const Block& block : blocks)
+  if (run.Blocks.empty())
   {
-    shape.Add(block.DataSet, block.Cells, whole);
-  }
-  shape.Reduce(this->Controller);
-  for (Block& block : blocks)
-  {
-    block.Shape = shape.Get(block.DataSet, block.Cells, whole);
-  }
-  this->Kept->Blocks.Assign(
-    blocks, [](const Block& block) { return std::make_pair(block.Cells, block.Shape.Slab); });
-  Extremes extremes;
-  for (const Block& block : blocks)
-  {
-    extremes.Add(block.Known->GetExtremes(block, this->FeatureSize == 0.0));
-  }
-  extremes.Reduce(this->Controller);
-  const bool needsMagnitude = this->IsSteered() && this->StrengthMode == MAGNITUDE &&
-    this->ReferenceMagnitude <= 0.0;
-  const Lengths lengths(this->IsSteered() ? blocks : std::vector<Block>(), needsMagnitude, this->MaskUpperThreshold, this->Controller);
-  if (failed)
-  {
-    internals.ShareCounts(this->Controller);
-    return refuse(internals.Why);
-  }
-  if (blocks.empty())
-  {
-    internals.ShareCounts(this->Controller);
-    internals.Report(extremes, lengths, parameters, composite != nullptr);
+    run.Report();
     return 1;
   }
-  if (this->FeatureSize == 0.0)
-  {
-    parameters.FeatureSize = extremes.Bounds.GetFeatureSize(extremes.GetSampleSpacing());
-  }
-  if (needsMagnitude)
-  {
-    parameters.ReferenceMagnitude = lengths.Longest > 0.0 ? lengths.Longest : 1.0;
-  }
-  this->ResolvedFeatureSize = parameters.FeatureSize;
-
-  std::string problem;
-  try
-  {
-    for (std::size_t i = 0; i < blocks.size() && !this->GetAbortOutput(); ++i)
-    {
-      internals.Process(blocks[i], parameters, extremes.Bounds.GetPlane(), lengths.Limit,
-        blocks[i].Original ? this->ResolvedMagnification : 1, static_cast<double>(i) / blocks.size(),
-        1.0 / blocks.size());
-    }
-  }
-  catch (const std::exception& error)
-  {
-    problem = error.what();
-  }
-  internals.ShareCounts(this->Controller);
-  if (!problem.empty())
-  {
-    return refuse(problem);
-  }
-  if (!composite)
+  if (!run.IsComposite)
   {
     noise::CropToUpdateExtent(vtkDataSet::SafeDownCast(output), outInfo);
   }
   if (this->TimePeriod > 0.0 && outInfo->Has(SDDP::UPDATE_TIME_STEP()))
   {
-    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
+    output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), GetTime(outInfo));
   }
-  this->NumberOfDegenerateSamples = static_cast<vtkIdType>(internals.Counts.Degenerate);
-  this->NumberOfStagnantSamples = static_cast<vtkIdType>(internals.Counts.Stagnant);
-  this->NumberOfOverlongSamples = internals.TooLong;
-  internals.Report(extremes, lengths, parameters, composite != nullptr);
+  this->NumberOfDegenerateSamples = static_cast<vtkIdType>(run.Counts.Degenerate);
+  this->NumberOfStagnantSamples = static_cast<vtkIdType>(run.Counts.Stagnant);
+  this->NumberOfOverlongSamples = run.TooLong;
+  run.Report();
   return 1;
 }
 

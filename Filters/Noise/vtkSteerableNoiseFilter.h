@@ -541,7 +541,7 @@ private:
     return this->Direction == DIRECTION_FIELD && this->Model == MODEL_STEERABLE;
   }
 
-  struct Internals;
+  struct Execution;
   struct KeptBlocks;
   std::unique_ptr<KeptBlocks> Kept;
 };

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <sstream>
 #include <vector>
 
@@ -45,11 +46,13 @@ std::string GetDefines(const ShaderOptions& options, const ShaderVariant& varian
      << HashJoinShift << "\n#define LEVEL_SEED " << LevelSeed << "u\n#define NOISE_OCTAVES "
      << model.Octaves << "\n"
      << std::scientific << "#define VARIANCE_FLOOR " << VarianceFloor
-     << "\n#define SURFACE_NORMAL_EIGENVALUE " << SurfaceNormalEigenvalue << "\n";
+     << "\n#define SURFACE_NORMAL_EIGENVALUE " << SurfaceNormalEigenvalue
+     << "\n#define SMALLEST_IN_PLANE " << SmallestInPlane << "\n#define STREAK_END " << StreakEnd
+     << "\n#define MOTION_AMPLITUDE " << std::setprecision(9) << MotionAmplitude << "\n";
   os << (variant.Tensors ? "#define NOISE_TENSORS\n" : "")
      << (variant.PerCell ? "#define NOISE_CELLS\n" : "")
      << (variant.AtVertices ? "#define NOISE_AT_VERTICES\n" : "")
-     << (model.Surflet == Basis::Streaks ? "#define NOISE_STREAKS\n" : "")
+     << (model.Basis == Basis::Streaks ? "#define NOISE_STREAKS\n" : "")
      << (model.Motion ? "#define NOISE_MOTION\n" : "") << (options.Pixels ? "#define NOISE_PIXELS\n" : "");
   return os.str();
 }
@@ -288,7 +291,7 @@ void SetUniforms(vtkShaderProgram* program, const ShaderOptions& options, vtkRen
   setFloat("noiseEigenvalueSum", model.EigenvalueSum);
   setFloat("noiseStrength", model.Strength);
   setFloat("noiseReference",
-    model.StrengthBy == steerable::StrengthMode::Magnitude ? model.ReferenceMagnitude : 0.0);
+    model.StrengthMode == steerable::StrengthMode::Magnitude ? model.ReferenceMagnitude : 0.0);
   setFloat("noiseMask", model.MaskThreshold);
   setFloat("noiseLacunarity", model.Lacunarity);
   setFloat("noiseGain", model.Gain);

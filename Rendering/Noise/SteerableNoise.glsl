@@ -11,8 +11,8 @@
 // |Speed|, Basis Streaks by sqrt(2) and by its jitter of half a cell.
 //
 // Range: places up to 2^23 cells from noiseOrigin; the lattice itself has no period below 2^32 cells.
-// The mapper defines before this text: the constants of LatticeHash.h, VARIANCE_FLOOR, NOISE_OCTAVES, and, as
-// its options ask, NOISE_TENSORS, NOISE_STREAKS, NOISE_MOTION, NOISE_PIXELS, NOISE_CELLS.
+// The mapper defines before this text the constants of LatticeHash.h, Surflet.h and MetricTensor.h that are the same here,
+// NOISE_OCTAVES, and, as its options ask, NOISE_TENSORS, NOISE_STREAKS, NOISE_MOTION, NOISE_PIXELS, NOISE_CELLS.
 
 uniform vec3 noiseEye;             // the eye in model coordinates, relative to the origin of places
 uniform vec3 noiseView;            // parallel projection: the direction to the eye; perspective: 0
@@ -96,7 +96,7 @@ float GradientDot(uint hash, vec3 v)
 
 float StreakProfile(float sigma)
 {
-  return abs(sigma) < 1.0 ? 0.5 * (1.0 + sigma) * min(1.0, (1.0 - sigma) * (1.0 / 0.15)) : 0.0;
+  return abs(sigma) < 1.0 ? 0.5 * (1.0 + sigma) * min(1.0, (1.0 - sigma) * (1.0 / STREAK_END)) : 0.0;
 }
 
 float Blend(float eigenvalue, float strength)
@@ -373,7 +373,7 @@ float EvaluateOctave(vec3 place, uvec3 origin, uint seed, AxialMetric metric)
         float clock = fract(noisePhase + HashToUnit(HashStream(hash, 1u)));
         sth.x += (clock - 0.5) * noiseSpeed;
         amplitude = sin(3.14159265 * clock);
-        amplitude *= amplitude * 1.63299316;
+        amplitude *= amplitude * MOTION_AMPLITUDE;
 #endif
         float across = dot(sth.yz, sth.yz);
 #ifdef NOISE_STREAKS
@@ -493,7 +493,7 @@ float NoiseAt(vec3 place, vec3 steering, vec3 steering2, vec3 bend, vec3 normal,
     normal *= inversesqrt(length2);
     direction -= dot(direction, normal) * normal;
     float inPlane = length(direction);
-    if (!(inPlane > 1e-5))
+    if (!(inPlane > SMALLEST_IN_PLANE))
     {
       return 0.0;
     }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SubbandAtlas.h"
 
-#include "SubbandTiles.h"
+#include "Subband/SubbandTiles.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "SubbandNoiseGlsl.h"
 
 #include "SubbandAtlas.h"
-#include "SubbandTiles.h"
+#include "Subband/SubbandTiles.h"
 
 #include "vtkShaderProgram.h"
 

@@ -3,7 +3,7 @@
 #include "SubbandTexture.h"
 
 #include "SubbandAtlas.h"
-#include "SubbandTiles.h"
+#include "Subband/SubbandTiles.h"
 
 #include "vtkOpenGLRenderWindow.h"
 #include "vtkOpenGLShaderCache.h"

@@ -4,6 +4,7 @@
 
 #include "MapperOptions.h"
 #include "NoiseHelper.h"
+#include "NoiseLengths.h"
 #include "NoiseShader.h"
 #include "SurfaceFields.h"
 
@@ -470,9 +471,9 @@ STEERABLENOISE_OPTION(Animate, bool, Animate, Animate, this->Internal->SetMotion
 STEERABLENOISE_OPTION(FollowCurvature, bool, Model.FollowCurvature, FollowCurvature, )
 STEERABLENOISE_OPTION(Seed, int, Model.Seed, static_cast<std::uint32_t>(Seed), )
 STEERABLENOISE_OPTION(Octaves, int, Model.Octaves, noise::Clamp(Octaves, 1, 8), VARIANT)
-STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthBy,
+STEERABLENOISE_OPTION(StrengthMode, int, Model.StrengthMode,
   StrengthMode == MAGNITUDE ? steerable::StrengthMode::Magnitude : steerable::StrengthMode::Constant, )
-STEERABLENOISE_OPTION(Basis, int, Model.Surflet,
+STEERABLENOISE_OPTION(Basis, int, Model.Basis,
   Basis == STREAKS ? steerable::Basis::Streaks : steerable::Basis::Gradient, VARIANT)
 STEERABLENOISE_OPTION(VectorsPerCell, bool, VectorsPerCell, VectorsPerCell,
   this->Internal->ChosenTime.Modified())
@@ -496,7 +497,7 @@ vtkSteerableNoiseMapper::Internals::Extremes vtkSteerableNoiseMapper::Internals:
   vtkDataObject* input, vtkInformation* choice, vtkMultiProcessController* controller) const
 {
   Extremes extremes;
-  std::vector<vtkDataArray*> arrays;
+  std::vector<noise::LengthSource> arrays;
   noise::ForEachPolyData(input,
     [&](vtkPolyData* data)
     {
@@ -511,7 +512,7 @@ vtkSteerableNoiseMapper::Internals::Extremes vtkSteerableNoiseMapper::Internals:
       }
       if (array)
       {
-        arrays.push_back(array);
+        arrays.push_back({ array });
       }
     });
   extremes.Lengths =

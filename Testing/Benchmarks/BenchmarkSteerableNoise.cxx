@@ -83,7 +83,7 @@ NoiseParameters Plain(int quality)
   p.EigenvalueSum = 4.0;
   p.Quality = quality;
   p.FollowCurvature = false;
-  p.Normalize = Normalization::None;
+  p.Normalization = Normalization::None;
   return p;
 }
 
@@ -388,21 +388,21 @@ void RegisterAll()
           p.AnisotropicWeight = false;
         } },
       { "UnitVariance", [](NoiseParameters& p) { p.FollowCurvature = false; } },
-      { "Curvature", [](NoiseParameters& p) { p.Normalize = Normalization::None; } },
+      { "Curvature", [](NoiseParameters& p) { p.Normalization = Normalization::None; } },
       { "Motion",
         [](NoiseParameters& p)
         {
           p.Motion = true;
           p.Phase = 0.3;
         } },
-      { "Streaks", [](NoiseParameters& p) { p.Surflet = Basis::Streaks; } },
-      { "Value", [](NoiseParameters& p) { p.Surflet = Basis::Value; } },
+      { "Streaks", [](NoiseParameters& p) { p.Basis = Basis::Streaks; } },
+      { "Value", [](NoiseParameters& p) { p.Basis = Basis::Value; } },
       { "Octaves3", [](NoiseParameters& p) { p.Octaves = 3; } },
-      { "Wide", [](NoiseParameters& p) { p.Interpolant = Fade::Wide; } },
-      { "Jittered", [](NoiseParameters& p) { p.Grid = Lattice::Jittered; } },
-      { "Simplicial", [](NoiseParameters& p) { p.Grid = Lattice::Simplicial; } },
-      { "Radial", [](NoiseParameters& p) { p.Window = Falloff::Radial; } },
-      { "Perlin", [](NoiseParameters& p) { p.Gradients = GradientSet::Perlin; } },
+      { "Wide", [](NoiseParameters& p) { p.Fade = Fade::Wide; } },
+      { "Jittered", [](NoiseParameters& p) { p.Lattice = Lattice::Jittered; } },
+      { "Simplicial", [](NoiseParameters& p) { p.Lattice = Lattice::Simplicial; } },
+      { "Radial", [](NoiseParameters& p) { p.Falloff = Falloff::Radial; } },
+      { "Perlin", [](NoiseParameters& p) { p.GradientSet = GradientSet::Perlin; } },
     };
     for (const auto& option : options)
     {

@@ -4,8 +4,8 @@
  * Subband noise: tiles, weights, sums, and the whole filter. Limits per core at K = 8 and 4 scales:
  * weights 0.5 million points a second, sums of one octave 5 million.
  */
-#include "SubbandTiles.h"
-#include "SubbandWeights.h"
+#include "Subband/SubbandTiles.h"
+#include "Subband/SubbandWeights.h"
 
 #include "vtkFloatArray.h"
 #include "vtkNew.h"

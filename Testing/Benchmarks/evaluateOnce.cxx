@@ -52,7 +52,7 @@ int main(int argc, char** argv)
   if (std::strcmp(argv[5], "plain") == 0)
   {
     p.FollowCurvature = false;
-    p.Normalize = Normalization::None;
+    p.Normalization = Normalization::None;
   }
   ImageGrid grid;
   grid.Dimensions = dimension == 2 ? std::array<std::int64_t, 3>{ 1024, 256, 1 }

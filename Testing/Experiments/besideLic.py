@@ -6,7 +6,7 @@ pvpython besideLic.py Data/cylinder_wake.vti Documentation/images
 
 Needs the module steerablenoise on PYTHONPATH and a display. LIC gets white noise smoothed so that its lines are as
 wide as the filter's: the standard deviation over that of the derivative across the flow, in pixels. The other
-measures are those of Documentation/noise-model.md, section 9. Exits with 1 where the filter's picture is less well
+measures are those of Testing/Kernel/PictureMetrics.h. Exits with 1 where the filter's picture is less well
 aligned than its limits in Testing/Kernel/TestNoiseQuality.cxx.
 """
 import os

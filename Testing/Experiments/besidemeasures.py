@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fields that pictures of flow are compared on, and what is measured in them (Documentation/noise-model.md, section 9)."""
+"""Fields that pictures of flow are compared on, and what is measured in them (as Testing/Kernel/PictureMetrics.h has it)."""
 import numpy
 
 FEATURE = 8.0  # pixels

@@ -8,7 +8,8 @@ python3 costAgainstSize.py plot PICTURE        draws the table (matplotlib)
 
 Every figure is of a process of its own (pvpython, or 1 to 3 ranks of pvbatch that hold a part each): seconds of the
 processor, of all threads, and the peak of memory above what was there before the update; "next" changes the
-Seed alone. FeatureSize is 12 spacings, everything else its default. LARGEST: number of points, 10^7.
+Seed alone. FeatureSize is 12 spacings, everything else its default. LARGEST: number of points, 10^7; meshes have
+at most 2 10^7.
 """
 import ctypes
 import json
@@ -20,6 +21,8 @@ import sys
 
 TABLE = "cost_against_size.json"
 KINDS = ("images", "triangles", "tetrahedra")
+SIZES = {"images": [10**n for n in range(4, 9)]}
+SIZES["triangles"] = SIZES["tetrahedra"] = [10**4, 10**5, 10**6, 10**7, 2 * 10**7]
 RANKS = (1, 2, 3)
 RANKS_SIZE = 10**6
 PIECES = (1, 4, 16)
@@ -188,12 +191,8 @@ def run(build, command, *arguments):
 
 
 def measure_all(build, largest):
-    rows = []
-    count = 10**4
-    while count <= largest:
-        for kind in KINDS:
-            rows.append(run(build, ["pvpython"], "--measure", kind, count))
-        count *= 10
+    rows = [run(build, ["pvpython"], "--measure", kind, count)
+            for kind in KINDS for count in SIZES[kind] if count <= largest]
     mpi = ["mpiexec", "--allow-run-as-root", "--map-by", ":OVERSUBSCRIBE", "-n"]
     for kind in KINDS:
         for ranks in RANKS:

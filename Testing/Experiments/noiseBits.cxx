@@ -34,31 +34,31 @@ std::vector<Case> AllCases()
     using P = NoiseParameters;
     add(prefix + "defaults", model, [](P&) {});
     add(prefix + "straight", model, [](P& p) { p.FollowCurvature = false; });
-    add(prefix + "raw", model, [](P& p) { p.Normalize = Normalization::None; });
-    add(prefix + "weight sum", model, [](P& p) { p.Normalize = Normalization::WeightSum; });
+    add(prefix + "raw", model, [](P& p) { p.Normalization = Normalization::None; });
+    add(prefix + "weight sum", model, [](P& p) { p.Normalization = Normalization::WeightSum; });
     add(prefix + "long", model, [](P& p) { p.StreakLength = 15.0; p.Quality = 8; });
     add(prefix + "short", model, [](P& p) { p.StreakLength = 1.0; p.Quality = 0; });
     add(prefix + "thin", model, [](P& p) { p.EigenvalueSum = 12.0; });
     add(prefix + "strength", model, [](P& p) { p.Strength = 0.4; });
     add(prefix + "isotropic", model, [](P& p) { p.Strength = 0.0; });
     add(prefix + "magnitude", model,
-      [](P& p) { p.StrengthBy = StrengthMode::Magnitude; p.MaskThreshold = 0.2; });
-    add(prefix + "value", model, [](P& p) { p.Surflet = Basis::Value; });
-    add(prefix + "streaks", model, [](P& p) { p.Surflet = Basis::Streaks; });
+      [](P& p) { p.StrengthMode = StrengthMode::Magnitude; p.MaskThreshold = 0.2; });
+    add(prefix + "value", model, [](P& p) { p.Basis = Basis::Value; });
+    add(prefix + "streaks", model, [](P& p) { p.Basis = Basis::Streaks; });
     add(prefix + "motion", model, [](P& p) { p.Motion = true; p.Phase = 0.3; });
     add(prefix + "octaves", model, [](P& p) { p.Octaves = 3; p.Turbulence = true; });
-    add(prefix + "cubic", model, [](P& p) { p.Interpolant = Fade::Cubic; });
-    add(prefix + "wide", model, [](P& p) { p.Interpolant = Fade::Wide; });
-    add(prefix + "radial", model, [](P& p) { p.Window = Falloff::Radial; });
-    add(prefix + "jittered", model, [](P& p) { p.Grid = Lattice::Jittered; });
-    add(prefix + "simplicial", model, [](P& p) { p.Grid = Lattice::Simplicial; });
-    add(prefix + "perlin", model, [](P& p) { p.Gradients = GradientSet::Perlin; });
+    add(prefix + "cubic", model, [](P& p) { p.Fade = Fade::Cubic; });
+    add(prefix + "wide", model, [](P& p) { p.Fade = Fade::Wide; });
+    add(prefix + "radial", model, [](P& p) { p.Falloff = Falloff::Radial; });
+    add(prefix + "jittered", model, [](P& p) { p.Lattice = Lattice::Jittered; });
+    add(prefix + "simplicial", model, [](P& p) { p.Lattice = Lattice::Simplicial; });
+    add(prefix + "perlin", model, [](P& p) { p.GradientSet = GradientSet::Perlin; });
     add(prefix + "unprojected", model, [](P& p) { p.MetricInProjection = false; });
     add(prefix + "period", model, [](P& p) { p.Period = { 5, 3, 4 }; });
   }
   add("unweighted", PaperModel(), [](NoiseParameters& p) { p.AnisotropicWeight = false; });
   add("cell", PaperModel(0),
-    [](NoiseParameters& p) { p.FollowCurvature = false; p.Normalize = Normalization::None; });
+    [](NoiseParameters& p) { p.FollowCurvature = false; p.Normalization = Normalization::None; });
   return cases;
 }
 

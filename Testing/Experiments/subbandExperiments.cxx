@@ -5,9 +5,9 @@
  * figures 3, 6 and 8 and the memory claim, each beside its limit. Returns 1 if one is missed. Table 10,
  * speed, is in Testing/Benchmarks. The pictures are made by subbandPictures.py.
  */
-#include "SubbandFilters.h"
-#include "SubbandTiles.h"
-#include "SubbandWeights.h"
+#include "Subband/SubbandFilters.h"
+#include "Subband/SubbandTiles.h"
+#include "Subband/SubbandWeights.h"
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>

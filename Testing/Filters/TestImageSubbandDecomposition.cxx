@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkImageSubbandDecomposition: layout, sums, waves, the filters of the paper's Fig. 8, bad input.
 #include "FilterTestHelpers.h"
-#include "SubbandFilters.h"
+#include "Subband/SubbandFilters.h"
 
 #include "vtkFieldData.h"
 #include "vtkImageSubbandDecomposition.h"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// vtkPolyDataSubbandNoise: arrays, cells, composites, steering, options, bad input, real meshes.
 #include "FilterTestHelpers.h"
-#include "SubbandFilters.h"
-#include "SubbandTiles.h"
-#include "SurfaceMetric.h"
+#include "Subband/SubbandFilters.h"
+#include "Subband/SubbandTiles.h"
+#include "Subband/SurfaceMetric.h"
 
 #include "vtkAppendPolyData.h"
 #include "vtkCellArray.h"

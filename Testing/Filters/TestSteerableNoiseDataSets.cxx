@@ -2098,26 +2098,35 @@ vtkSmartPointer<vtkImageData> WithArray(int components, const char* name = "velo
   return image;
 }
 
-std::vector<Case> BadInput()
-{
-  using F = vtkSteerableNoiseFilter*;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double inf = std::numeric_limits<double>::infinity();
-  const auto image = [] { return vtkSmartPointer<vtkDataObject>(MakeImage(12, 10, 8)); };
-  const auto named = [](const char* name)
-  {
-    return [name](F f) {
-      f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, name);
-    };
-  };
-  std::vector<Case> cases;
-  const auto add = [&](const std::string& name,
-                     std::function<vtkSmartPointer<vtkDataObject>()> make, Expected outcome,
-                     std::function<void(F)> configure = {}) {
-    cases.push_back({ name, std::move(make), std::move(configure), outcome });
-  };
+using F = vtkSteerableNoiseFilter*;
+using Data = vtkSmartPointer<vtkDataObject>;
+constexpr double NotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double Infinite = std::numeric_limits<double>::infinity();
 
-  // Each property out of its range is clamped, and the noise stays finite.
+Data Image()
+{
+  return MakeImage(12, 10, 8);
+}
+
+std::function<void(F)> Named(const char* name)
+{
+  return [name](F f) {
+    f->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS_THEN_CELLS, name);
+  };
+}
+
+/// Collects cases: add(name, input, outcome, properties).
+auto AddTo(std::vector<Case>& cases)
+{
+  return [&cases](const std::string& name, std::function<Data()> make, Expected outcome,
+           std::function<void(F)> configure = {})
+  { cases.push_back({ name, std::move(make), std::move(configure), outcome }); };
+}
+
+/// Each property out of its range is clamped, and the noise stays finite.
+void AddClampedProperties(std::vector<Case>& cases)
+{
+  const auto add = AddTo(cases);
   const std::pair<const char*, std::function<void(F)>> clamped[] = {
     { "StreakLengthZero", [](F f) { f->SetStreakLength(0.0); } },
     { "StreakLengthHuge", [](F f) { f->SetStreakLength(1e9); } },
@@ -2146,8 +2155,8 @@ std::vector<Case> BadInput()
       } },
     { "PhaseHuge", [](F f) { f->SetPhase(1e18); } },
     { "PhaseNegative", [](F f) { f->SetPhase(-12.3); } },
-    { "PhaseNaN", [=](F f) { f->SetPhase(nan); } },
-    { "TimePeriodNaN", [=](F f) { f->SetTimePeriod(nan); } },
+    { "PhaseNaN", [](F f) { f->SetPhase(NotANumber); } },
+    { "TimePeriodNaN", [](F f) { f->SetTimePeriod(NotANumber); } },
     { "SpeedHuge",
       [](F f)
       {
@@ -2170,11 +2179,17 @@ std::vector<Case> BadInput()
   };
   for (const auto& entry : clamped)
   {
-    add(entry.first, image, Fine, entry.second);
+    add(entry.first, Image, Fine, entry.second);
   }
-  add("FeatureSizeNegative", image, Failed, [](F f) { f->SetFeatureSize(-1.0); });
-  add("FeatureSizeTiny", image, Warned, [](F f) { f->SetFeatureSize(1e-9); });
-  add("OctavesHuge", image, Warned, [](F f) { f->SetOctaves(1000); });
+}
+
+/// What no clamp can mend: NaN passes one, and some values contradict each other.
+void AddRefusedProperties(std::vector<Case>& cases)
+{
+  const auto add = AddTo(cases);
+  add("FeatureSizeNegative", Image, Failed, [](F f) { f->SetFeatureSize(-1.0); });
+  add("FeatureSizeTiny", Image, Warned, [](F f) { f->SetFeatureSize(1e-9); });
+  add("OctavesHuge", Image, Warned, [](F f) { f->SetOctaves(1000); });
   // NaN passes a clamp.
   const std::pair<const char*, void (vtkSteerableNoiseFilter::*)(double)> numbers[] = {
     { "FeatureSizeNaN", &vtkSteerableNoiseFilter::SetFeatureSize },
@@ -2191,52 +2206,56 @@ std::vector<Case> BadInput()
   };
   for (const auto& entry : numbers)
   {
-    add(entry.first, image, Failed,
+    add(entry.first, Image, Failed,
       [=](F f)
       {
         f->SetStrengthMode(1);
-        (f->*entry.second)(nan);
+        (f->*entry.second)(NotANumber);
       });
   }
-  add("PeriodNegative", image, Failed, [](F f) { f->SetPeriod(-3, 0, 0); });
-  add("PeriodHuge", image, Failed, [](F f) { f->SetPeriod(2147483647, 2147483647, 2147483647); });
-  add("PeriodSimplicial", image, Failed,
+  add("PeriodNegative", Image, Failed, [](F f) { f->SetPeriod(-3, 0, 0); });
+  add("PeriodHuge", Image, Failed, [](F f) { f->SetPeriod(2147483647, 2147483647, 2147483647); });
+  add("PeriodSimplicial", Image, Failed,
     [](F f)
     {
       f->SetPeriod(3, 0, 0);
       f->SetLattice(2);
     });
-  add("PeriodFractionalLacunarity", image, Failed,
+  add("PeriodFractionalLacunarity", Image, Failed,
     [](F f)
     {
       f->SetPeriod(3, 0, 0);
       f->SetOctaves(2);
       f->SetLacunarity(2.5);
     });
-  add("WeightSumWithLargeTrace", image, Failed,
+  add("WeightSumWithLargeTrace", Image, Failed,
     [](F f)
     {
       f->SetNormalization(1);
       f->SetEigenvalueSum(6.0);
     });
-  add("NoResultName", image, Failed, [](F f) { f->SetResultArrayName(nullptr); });
-  add("EmptyResultName", image, Failed, [](F f) { f->SetResultArrayName(""); });
+  add("NoResultName", Image, Failed, [](F f) { f->SetResultArrayName(nullptr); });
+  add("EmptyResultName", Image, Failed, [](F f) { f->SetResultArrayName(""); });
+}
 
-  // Each array wrong.
-  add("MissingArray", image, Failed, named("nothing"));
+/// Arrays that are missing, or of any number of components.
+void AddWrongArrays(std::vector<Case>& cases)
+{
+  const auto add = AddTo(cases);
+  add("MissingArray", Image, Failed, Named("nothing"));
   for (const int components : { 1, 5, 7, 8, 10 })
   {
     add(
       std::to_string(components) + "Components",
-      [=] { return vtkSmartPointer<vtkDataObject>(WithArray(components)); }, Failed,
-      named("velocity"));
+      [=] { return Data(WithArray(components)); }, Failed,
+      Named("velocity"));
   }
   for (const int components : { 2, 4, 6, 9 })
   {
     add(
       std::to_string(components) + "Components",
-      [=] { return vtkSmartPointer<vtkDataObject>(WithArray(components)); }, Fine,
-      named("velocity"));
+      [=] { return Data(WithArray(components)); }, Fine,
+      Named("velocity"));
   }
   add(
     "NoArrays",
@@ -2244,7 +2263,7 @@ std::vector<Case> BadInput()
     {
       auto bare = vtkSmartPointer<vtkImageData>::New();
       bare->SetDimensions(5, 5, 5);
-      return vtkSmartPointer<vtkDataObject>(bare);
+      return Data(bare);
     },
     Failed);
   add(
@@ -2258,21 +2277,27 @@ std::vector<Case> BadInput()
       strings->SetNumberOfComponents(3);
       strings->SetNumberOfTuples(2);
       bare->GetPointData()->AddArray(strings);
-      return vtkSmartPointer<vtkDataObject>(bare);
+      return Data(bare);
     },
-    Failed, named("text"));
+    Failed, Named("text"));
+}
+
+/// Arrays of zeros, NaN and such; names that are unusual.
+void AddStrangeValues(std::vector<Case>& cases)
+{
+  const auto add = AddTo(cases);
   const auto filled = [](double value)
   {
     return [value]
     {
       auto data = MakeImage(12, 10, 8);
       data->GetPointData()->GetVectors()->Fill(value);
-      return vtkSmartPointer<vtkDataObject>(data);
+      return Data(data);
     };
   };
   add("AllZero", filled(0.0), Warned);
-  add("AllNaN", filled(nan), Warned);
-  add("AllInfinite", filled(inf), Warned);
+  add("AllNaN", filled(NotANumber), Warned);
+  add("AllInfinite", filled(Infinite), Warned);
   add("Denormal", filled(1e-42), Fine);
   add("AllZeroByMagnitude", filled(0.0), Warned, [](F f) { f->SetStrengthMode(1); });
   add(
@@ -2280,16 +2305,20 @@ std::vector<Case> BadInput()
     [=]
     {
       auto data = WithArray(6);
-      data->GetPointData()->GetArray(0)->Fill(nan);
-      return vtkSmartPointer<vtkDataObject>(data);
+      data->GetPointData()->GetArray(0)->Fill(NotANumber);
+      return Data(data);
     },
-    Warned, named("velocity"));
+    Warned, Named("velocity"));
   add(
-    "ArrayNamedWithSpaces", [] { return vtkSmartPointer<vtkDataObject>(WithArray(3, "a b, c")); },
-    Fine, named("a b, c"));
-  add("ResultNameOfTheInput", image, Fine, [](F f) { f->SetResultArrayName("SteerableNoise"); });
+    "ArrayNamedWithSpaces", [] { return Data(WithArray(3, "a b, c")); },
+    Fine, Named("a b, c"));
+  add("ResultNameOfTheInput", Image, Fine, [](F f) { f->SetResultArrayName("SteerableNoise"); });
+}
 
-  // More points than memory holds, and arrays that do not fit: refused before anything is allocated.
+/// More points than memory holds, and arrays that do not fit: refused before anything is allocated.
+void AddHugeData(std::vector<Case>& cases)
+{
+  const auto add = AddTo(cases);
   for (const int tuples : { 0, 3 })
   {
     add(
@@ -2304,38 +2333,48 @@ std::vector<Case> BadInput()
         short3->SetNumberOfTuples(tuples);
         short3->Fill(1.0);
         huge->GetPointData()->SetVectors(short3);
-        return vtkSmartPointer<vtkDataObject>(huge);
+        return Data(huge);
       },
       Failed);
   }
+}
 
-  // Each geometry degenerate.
-  const auto sized = [](int nx, int ny, int nz)
-  { return [=] { return vtkSmartPointer<vtkDataObject>(MakeImage(nx, ny, nz)); }; };
+/// Nothing to do is no error.
+void AddEmptyData(std::vector<Case>& cases)
+{
+  const auto add = AddTo(cases);
   add(
     "EmptyImage",
-    [] { return vtkSmartPointer<vtkDataObject>(vtkSmartPointer<vtkImageData>::New()); }, PassedOn);
+    [] { return Data(vtkSmartPointer<vtkImageData>::New()); }, PassedOn);
   add(
     "EmptyPolyData",
-    [] { return vtkSmartPointer<vtkDataObject>(vtkSmartPointer<vtkPolyData>::New()); }, PassedOn);
+    [] { return Data(vtkSmartPointer<vtkPolyData>::New()); }, PassedOn);
   add(
     "EmptyUnstructured",
-    [] { return vtkSmartPointer<vtkDataObject>(vtkSmartPointer<vtkUnstructuredGrid>::New()); },
+    [] { return Data(vtkSmartPointer<vtkUnstructuredGrid>::New()); },
     PassedOn);
   add(
     "EmptyMultiBlock",
-    [] { return vtkSmartPointer<vtkDataObject>(vtkSmartPointer<vtkMultiBlockDataSet>::New()); },
+    [] { return Data(vtkSmartPointer<vtkMultiBlockDataSet>::New()); },
     PassedOn);
+}
+
+/// Grids without thickness, and of extreme places and spacings.
+void AddDegenerateGrids(std::vector<Case>& cases)
+{
+  const auto add = AddTo(cases);
+  const auto sized = [](int nx, int ny, int nz)
+  { return [=] { return Data(MakeImage(nx, ny, nz)); }; };
   add("OnePoint", sized(1, 1, 1), Fine);
   add("TwoPoints", sized(2, 1, 1), Fine);
   add("LineAlongY", sized(1, 50, 1), Fine);
   add("LineAlongZ", sized(1, 1, 50), Fine);
   add("TwoByTwoByTwo", sized(2, 2, 2), Fine);
   add(
-    "TinySpacing", [] { return vtkSmartPointer<vtkDataObject>(MakeImage(12, 10, 8, 1e-200)); },
+    "TinySpacing", [] { return Data(MakeImage(12, 10, 8, 1e-200)); },
     Fine);
   add(
-    "HugeSpacing", [] { return vtkSmartPointer<vtkDataObject>(MakeImage(12, 10, 8, 1e200)); },
+    "HugeSpacing", [] { return Data(MakeImage(12, 10, 8, 1e200)); },
     Fine);
   add(
     "HugeOrigin",
@@ -2343,7 +2382,7 @@ std::vector<Case> BadInput()
     {
       auto data = MakeImage(12, 10, 8);
       data->SetOrigin(1e15, -1e15, 1e15);
-      return vtkSmartPointer<vtkDataObject>(data);
+      return Data(data);
     },
     Fine);
   add(
@@ -2351,58 +2390,64 @@ std::vector<Case> BadInput()
     [=]
     {
       auto data = MakeImage(12, 10, 8);
-      data->SetOrigin(nan, 0, 0);
-      return vtkSmartPointer<vtkDataObject>(data);
+      data->SetOrigin(NotANumber, 0, 0);
+      return Data(data);
     },
     Failed);
+}
+
+/// Cells without size, points that are nowhere, or alone.
+void AddDegenerateCells(std::vector<Case>& cases)
+{
+  const auto add = AddTo(cases);
   add(
     "NaNPoint",
     [=]
     {
-      return vtkSmartPointer<vtkDataObject>(
-        Cells(VTK_TETRA, { 0, 0, 0, 1, 0, 0, 0, 1, 0, nan, 0, 1 }));
+      return Data(
+        Cells(VTK_TETRA, { 0, 0, 0, 1, 0, 0, 0, 1, 0, NotANumber, 0, 1 }));
     },
     Warned);
   add(
     "InfinitePoint",
     [=]
     {
-      return vtkSmartPointer<vtkDataObject>(
-        Cells(VTK_TETRA, { 0, 0, 0, 1, 0, 0, 0, 1, 0, inf, 0, 1 }));
+      return Data(
+        Cells(VTK_TETRA, { 0, 0, 0, 1, 0, 0, 0, 1, 0, Infinite, 0, 1 }));
     },
     Warned);
   add(
     "FlatTetrahedron",
     []
     {
-      return vtkSmartPointer<vtkDataObject>(
+      return Data(
         Cells(VTK_TETRA, { 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0 }));
     },
     Fine);
   add(
     "DegenerateTriangle",
     [] {
-      return vtkSmartPointer<vtkDataObject>(Cells(VTK_TRIANGLE, { 0, 0, 0, 1, 0, 0, 2, 0, 0 }));
+      return Data(Cells(VTK_TRIANGLE, { 0, 0, 0, 1, 0, 0, 2, 0, 0 }));
     },
     Fine);
   add(
     "CoincidentPoints",
     []
     {
-      return vtkSmartPointer<vtkDataObject>(
+      return Data(
         Cells(VTK_TETRA, { 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1 }));
     },
     Fine);
   add(
     "OnlyVertices",
     [] {
-      return vtkSmartPointer<vtkDataObject>(Cells(VTK_POLY_VERTEX, { 0, 0, 0, 1, 2, 3, 4, 5, 6 }));
+      return Data(Cells(VTK_POLY_VERTEX, { 0, 0, 0, 1, 2, 3, 4, 5, 6 }));
     },
     Fine);
   add(
     "OnlyLines",
     [] {
-      return vtkSmartPointer<vtkDataObject>(Cells(VTK_POLY_LINE, { 0, 0, 0, 1, 2, 3, 4, 5, 6 }));
+      return Data(Cells(VTK_POLY_LINE, { 0, 0, 0, 1, 2, 3, 4, 5, 6 }));
     },
     Fine);
   add(
@@ -2415,7 +2460,7 @@ std::vector<Case> BadInput()
       auto data = vtkSmartPointer<vtkPolyData>::New();
       data->SetPoints(points);
       AddFlow(data);
-      return vtkSmartPointer<vtkDataObject>(data);
+      return Data(data);
     },
     Fine);
   add(
@@ -2435,9 +2480,19 @@ std::vector<Case> BadInput()
         v->InsertNextTuple3(0, 0, 1);
       }
       data->GetPointData()->SetVectors(v);
-      return vtkSmartPointer<vtkDataObject>(data);
+      return Data(data);
     },
     Warned);
+}
+
+std::vector<Case> BadInput()
+{
+  std::vector<Case> cases;
+  for (const auto add : { AddClampedProperties, AddRefusedProperties, AddWrongArrays,
+         AddStrangeValues, AddHugeData, AddEmptyData, AddDegenerateGrids, AddDegenerateCells })
+  {
+    add(cases);
+  }
   return cases;
 }
 

@@ -25,12 +25,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // Without the weight all corners in the window count, at Quality 8 up to 250 000 for a sample.
   p.Quality = bytes.TakeBelow(p.AnisotropicWeight ? 10 : 2);
   p.Strength = bytes.TakeBool() ? 1.0 : bytes.TakeNumber();
-  p.StrengthBy = static_cast<StrengthMode>(bytes.TakeBelow(2));
+  p.StrengthMode = static_cast<StrengthMode>(bytes.TakeBelow(2));
   p.ReferenceMagnitude = bytes.TakeNumber();
   p.MaskThreshold = bytes.TakeBool() ? 0.0 : bytes.TakeNumber();
   p.FollowCurvature = bytes.TakeBool();
-  p.Normalize = static_cast<Normalization>(bytes.TakeBelow(3));
-  p.Surflet = static_cast<Basis>(bytes.TakeBelow(3));
+  p.Normalization = static_cast<Normalization>(bytes.TakeBelow(3));
+  p.Basis = static_cast<Basis>(bytes.TakeBelow(3));
   p.Density = bytes.TakeBool() ? 0.25 : bytes.TakeNumber();
   p.Motion = bytes.TakeBool();
   p.Phase = bytes.TakeNumber();
@@ -39,10 +39,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   p.Lacunarity = bytes.TakeBool() ? 2.0 : bytes.TakeNumber();
   p.Gain = bytes.TakeBool() ? 0.5 : bytes.TakeNumber();
   p.Turbulence = bytes.TakeBool();
-  p.Interpolant = static_cast<Fade>(bytes.TakeBelow(3));
-  p.Window = static_cast<Falloff>(bytes.TakeBelow(2));
-  p.Grid = static_cast<Lattice>(bytes.TakeBelow(3));
-  p.Gradients = static_cast<GradientSet>(bytes.TakeBelow(2));
+  p.Fade = static_cast<Fade>(bytes.TakeBelow(3));
+  p.Falloff = static_cast<Falloff>(bytes.TakeBelow(2));
+  p.Lattice = static_cast<Lattice>(bytes.TakeBelow(3));
+  p.GradientSet = static_cast<GradientSet>(bytes.TakeBelow(2));
   for (int& cells : p.Period)
   {
     cells = bytes.TakeBool() ? 0 : bytes.Take<std::int16_t>();

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * What "good" means for a picture of noise, as numbers: alignment, coherence, anisotropy and motion
- * (Documentation/noise-model.md, section 9).
+ * What "good" means for a picture of noise, as numbers: alignment, coherence, anisotropy and motion.
  */
 #ifndef PictureMetrics_h
 #define PictureMetrics_h

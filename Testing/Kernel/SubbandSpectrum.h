@@ -7,7 +7,7 @@
 #ifndef SubbandSpectrum_h
 #define SubbandSpectrum_h
 
-#include "SubbandFilters.h"
+#include "Subband/SubbandFilters.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -215,7 +215,7 @@ TEST(MetricTensor, KeepsAMetricOfTheUsersOwn)
   metric = MetricFromMetric<2>(half, plane, plane.norm());
   EXPECT_DOUBLE_EQ(metric.Along, 0.9);
   EXPECT_DOUBLE_EQ(metric.Across, 1.5);
-  half.StrengthBy = StrengthMode::Magnitude;
+  half.StrengthMode = StrengthMode::Magnitude;
   half.ReferenceMagnitude = 10.0;
   EXPECT_DOUBLE_EQ(MetricFromMetric<2>(half, plane, 5.0).Across, 1.25);
 
@@ -317,7 +317,7 @@ TEST(MetricTensor, BlendsEigenvaluesByStrength)
   }
   // By magnitude: Strength times |u| / ReferenceMagnitude, no more than Strength.
   parameters.Strength = 0.8;
-  parameters.StrengthBy = StrengthMode::Magnitude;
+  parameters.StrengthMode = StrengthMode::Magnitude;
   for (double reference : { 1e-3, 5.0, 20.0, 1e6 })
   {
     parameters.ReferenceMagnitude = reference;
@@ -335,7 +335,7 @@ TEST(MetricTensor, BlendsEigenvaluesByStrength)
     1e-12);
   NoiseParameters plain = parameters;
   plain.Strength = 1.0;
-  plain.StrengthBy = StrengthMode::Constant;
+  plain.StrengthMode = StrengthMode::Constant;
   const Vector<3> inPlane(3.0, 4.0, 0.0);
   const Matrix<3> surface = MetricFromSurfaceVector(plain, inPlane, Vector<3>::UnitZ()).ToMatrix();
   const double share = 0.8 * 5.0 / 50.0;

@@ -194,7 +194,7 @@ NoiseParameters KenslerParameters()
   parameters.Strength = 0.0;
   parameters.AnisotropicWeight = false;
   parameters.FollowCurvature = false;
-  parameters.Normalize = Normalization::None;
+  parameters.Normalization = Normalization::None;
   return parameters;
 }
 
@@ -216,11 +216,11 @@ std::vector<KenslerCase> KenslerCases()
   };
   add("quintic");
   KenslerCase& cubic = add("cubic");
-  cubic.Parameters.Interpolant = Fade::Cubic;
+  cubic.Parameters.Fade = Fade::Cubic;
   cubic.Parts.Falloff = KenslerCubic;
   KenslerCase& classic = add("cubic, Perlin's gradients, period");
-  classic.Parameters.Interpolant = Fade::Cubic;
-  classic.Parameters.Gradients = GradientSet::Perlin;
+  classic.Parameters.Fade = Fade::Cubic;
+  classic.Parameters.GradientSet = GradientSet::Perlin;
   classic.Parameters.Period = { 4, 3, 5 };
   classic.Parts.Falloff = KenslerCubic;
   classic.Parts.Gradients = GradientSet::Perlin;
@@ -230,36 +230,36 @@ std::vector<KenslerCase> KenslerCases()
   unsteered.Parameters.Strength = 1.0;
   unsteered.Parameters.MetricInProjection = false;
   KenslerCase& wide = add("wide");
-  wide.Parameters.Interpolant = Fade::Wide;
+  wide.Parameters.Fade = Fade::Wide;
   wide.Parts.Falloff = KenslerWide;
   KenslerCase& radial = add("radial");
-  radial.Parameters.Window = Falloff::Radial;
+  radial.Parameters.Falloff = Falloff::Radial;
   radial.Parts.Radial = true;
   KenslerCase& value = add("value");
-  value.Parameters.Surflet = Basis::Value;
+  value.Parameters.Basis = Basis::Value;
   value.Parts.Values = true;
   KenslerCase& jittered = add("jittered");
-  jittered.Parameters.Grid = Lattice::Jittered;
+  jittered.Parameters.Lattice = Lattice::Jittered;
   jittered.Parts.Jittered = true;
   KenslerCase& perlin = add("Perlin's gradients");
-  perlin.Parameters.Gradients = GradientSet::Perlin;
+  perlin.Parameters.GradientSet = GradientSet::Perlin;
   perlin.Parts.Gradients = GradientSet::Perlin;
   KenslerCase& tiled = add("period");
   tiled.Parameters.Period = { 4, 3, 5 };
   tiled.Parts.Period = { 4, 3, 5 };
   KenslerCase& simplicial = add("simplicial");
-  simplicial.Parameters.Grid = Lattice::Simplicial;
+  simplicial.Parameters.Lattice = Lattice::Simplicial;
   simplicial.Parts.Simplicial = true;
   KenslerCase& simplex = add("simplicial and radial");
-  simplex.Parameters.Grid = Lattice::Simplicial;
-  simplex.Parameters.Window = Falloff::Radial;
+  simplex.Parameters.Lattice = Lattice::Simplicial;
+  simplex.Parameters.Falloff = Falloff::Radial;
   simplex.Parts.Simplicial = true;
   simplex.Parts.Radial = true;
   KenslerCase& several = add("wide, jittered, radial, value, period");
-  several.Parameters.Interpolant = Fade::Wide;
-  several.Parameters.Grid = Lattice::Jittered;
-  several.Parameters.Window = Falloff::Radial;
-  several.Parameters.Surflet = Basis::Value;
+  several.Parameters.Fade = Fade::Wide;
+  several.Parameters.Lattice = Lattice::Jittered;
+  several.Parameters.Falloff = Falloff::Radial;
+  several.Parameters.Basis = Basis::Value;
   several.Parameters.Period = { 5, 5, 5 };
   several.Parts = { KenslerWide, true, true, true, false, GradientSet::Uniform, { 5, 5, 5 } };
   return cases;
@@ -372,7 +372,7 @@ TEST(NoiseQuality, FollowsCircles)
     EXPECT_LE(unit.Median, limit.NormalizedMedian) << "Quality " << quality;
     EXPECT_GE(unit.Ratio, limit.Ratio) << "Quality " << quality;
     EXPECT_NEAR(unit.Coherence, limit.Coherence, 0.05) << "Quality " << quality;
-    parameters.Normalize = Normalization::None;
+    parameters.Normalization = Normalization::None;
     const Alignment raw = MeasurePicture(parameters, Circular, "circles, raw sum");
     EXPECT_LE(raw.Median, limit.Median) << "Quality " << quality;
     EXPECT_GE(raw.Ratio, limit.Ratio) << "Quality " << quality;
@@ -578,7 +578,7 @@ TEST(NoiseQuality, HasZeroMeanOverAPeriod)
   for (Fade fade : { Fade::Cubic, Fade::Quintic, Fade::Wide })
   {
     NoiseParameters parameters = KenslerParameters();
-    parameters.Interpolant = fade;
+    parameters.Fade = fade;
     parameters.Period = { 8, 6, 0 };
     ImageGrid grid;
     grid.Spacing = { 1.0 / 32.0, 1.0 / 32.0, 1.0 };
@@ -604,14 +604,14 @@ TEST(NoiseQuality, AlignsEveryVariant)
     std::function<void(NoiseParameters&)> Apply;
   };
   using P = NoiseParameters;
-  const std::vector<Change> changes = { { "Value", [](P& p) { p.Surflet = Basis::Value; } },
-    { "Streaks", [](P& p) { p.Surflet = Basis::Streaks; } },
-    { "Jittered", [](P& p) { p.Grid = Lattice::Jittered; } },
-    { "Simplicial", [](P& p) { p.Grid = Lattice::Simplicial; } },
-    { "Radial", [](P& p) { p.Window = Falloff::Radial; } },
-    { "Perlin's gradients", [](P& p) { p.Gradients = GradientSet::Perlin; } },
-    { "Cubic", [](P& p) { p.Interpolant = Fade::Cubic; } },
-    { "Wide", [](P& p) { p.Interpolant = Fade::Wide; } },
+  const std::vector<Change> changes = { { "Value", [](P& p) { p.Basis = Basis::Value; } },
+    { "Streaks", [](P& p) { p.Basis = Basis::Streaks; } },
+    { "Jittered", [](P& p) { p.Lattice = Lattice::Jittered; } },
+    { "Simplicial", [](P& p) { p.Lattice = Lattice::Simplicial; } },
+    { "Radial", [](P& p) { p.Falloff = Falloff::Radial; } },
+    { "Perlin's gradients", [](P& p) { p.GradientSet = GradientSet::Perlin; } },
+    { "Cubic", [](P& p) { p.Fade = Fade::Cubic; } },
+    { "Wide", [](P& p) { p.Fade = Fade::Wide; } },
     { "Period",
       [](P& p) {
         p.Period = { 16, 16, 0 };
@@ -790,7 +790,7 @@ TEST(NoiseQuality, PointsStreaksDownstream)
   for (int quality : { 2, 4, 8 })
   {
     NoiseParameters parameters = PaperPicture(quality);
-    parameters.Surflet = Basis::Streaks;
+    parameters.Basis = Basis::Streaks;
     const Picture picture = MakePicture(parameters, Circular);
     EXPECT_GE(*std::min_element(picture.Values.begin(), picture.Values.end()), 0.0f);
     const double skewness = SkewnessAlong(picture, Circular);
@@ -809,7 +809,7 @@ TEST(NoiseQuality, PointsStreaksOfAnyLengthDownstream)
   for (double length : { 3.0, 6.0, 12.0 })
   {
     NoiseParameters parameters = PictureParameters();
-    parameters.Surflet = Basis::Streaks;
+    parameters.Basis = Basis::Streaks;
     parameters.StreakLength = length;
     for (const VectorFunction& field : { VectorFunction(Circular), VectorFunction(ThreeVortices) })
     {
@@ -828,7 +828,7 @@ TEST(NoiseQuality, MakesStreaksAndTheirTravelAsLongAsAsked)
   const auto ratio = [](Basis basis, double length)
   {
     NoiseParameters parameters = PictureParameters();
-    parameters.Surflet = basis;
+    parameters.Basis = basis;
     parameters.StreakLength = length;
     return MeasurePicture(parameters, Uniform(33.0), "length").Ratio;
   };

@@ -97,7 +97,7 @@ template <int N>
 void ExpectReferenceOfModel(const std::string& model, NoiseParameters parameters, int count,
   bool slow, unsigned seed, double bound)
 {
-  const bool unit = parameters.Normalize == Normalization::UnitVariance;
+  const bool unit = parameters.Normalization == Normalization::UnitVariance;
   for (Steering steering : { Steering::Vectors, Steering::Tensors, Steering::Normals })
   {
     for (double curvature : { 0.0, 0.15, 0.6 })
@@ -109,7 +109,7 @@ void ExpectReferenceOfModel(const std::string& model, NoiseParameters parameters
       parameters.FollowCurvature = curvature > 0.0;
       const std::string family = std::to_string(N) + "D " +
         (unit                                                  ? "UnitVariance "
-            : parameters.Normalize == Normalization::None ? "None "
+            : parameters.Normalization == Normalization::None ? "None "
                                                           : "WeightSum ") +
         model + " " + NameOf(steering) + (curvature > 0.0 ? " curved" : "");
       const bool bentSurface = unit && steering == Steering::Normals && parameters.FollowCurvature;
@@ -126,7 +126,7 @@ void ExpectReferenceAtAllQualities(Normalization normalization, double bound = B
   for (int quality : { 0, 1, 2, 4, 8 })
   {
     NoiseParameters parameters = PaperModel(quality);
-    parameters.Normalize = normalization;
+    parameters.Normalization = normalization;
     const bool unit = normalization == Normalization::UnitVariance;
     // The reference visits the whole box: 9000 corners in 3D at Quality 8.
     const int count = unit ? 2000 : N == 3 && quality == 8 ? 200 : 1000;
@@ -143,7 +143,7 @@ void ExpectReferenceAtAllLengths(Normalization normalization, double bound = Bou
   {
     NoiseParameters parameters;
     parameters.StreakLength = length;
-    parameters.Normalize = normalization;
+    parameters.Normalization = normalization;
     const int count = N == 2 ? 2000 : length <= 6 ? 500 : length <= 10 ? 100 : 30;
     ExpectReferenceOfModel<N>("StreakLength " + std::to_string(length), parameters, count,
       normalization != Normalization::UnitVariance || N == 3, 1 + length,
@@ -163,27 +163,27 @@ const std::vector<Variant>& Variants()
 {
   using P = NoiseParameters;
   static const std::vector<Variant> variants = {
-    { "Basis Value", [](P& p) { p.Surflet = Basis::Value; } },
-    { "Basis Streaks", [](P& p) { p.Surflet = Basis::Streaks; } },
+    { "Basis Value", [](P& p) { p.Basis = Basis::Value; } },
+    { "Basis Streaks", [](P& p) { p.Basis = Basis::Streaks; } },
     { "Basis Streaks, Density 0.05",
       [](P& p)
       {
-        p.Surflet = Basis::Streaks;
+        p.Basis = Basis::Streaks;
         p.Density = 0.05;
-        p.Normalize = Normalization::None;
+        p.Normalization = Normalization::None;
       } },
     { "Basis Streaks, Density 1",
       [](P& p)
       {
-        p.Surflet = Basis::Streaks;
+        p.Basis = Basis::Streaks;
         p.Density = 1.0;
       } },
-    { "Fade Cubic", [](P& p) { p.Interpolant = Fade::Cubic; } },
-    { "Fade Wide", [](P& p) { p.Interpolant = Fade::Wide; } },
-    { "Falloff Radial", [](P& p) { p.Window = Falloff::Radial; } },
-    { "Lattice Jittered", [](P& p) { p.Grid = Lattice::Jittered; } },
-    { "Lattice Simplicial", [](P& p) { p.Grid = Lattice::Simplicial; } },
-    { "GradientSet Perlin", [](P& p) { p.Gradients = GradientSet::Perlin; } },
+    { "Fade Cubic", [](P& p) { p.Fade = Fade::Cubic; } },
+    { "Fade Wide", [](P& p) { p.Fade = Fade::Wide; } },
+    { "Falloff Radial", [](P& p) { p.Falloff = Falloff::Radial; } },
+    { "Lattice Jittered", [](P& p) { p.Lattice = Lattice::Jittered; } },
+    { "Lattice Simplicial", [](P& p) { p.Lattice = Lattice::Simplicial; } },
+    { "GradientSet Perlin", [](P& p) { p.GradientSet = GradientSet::Perlin; } },
     { "Motion, Phase 0.3",
       [](P& p)
       {
@@ -241,7 +241,7 @@ const std::vector<Variant>& Variants()
     { "Strength by Magnitude",
       [](P& p)
       {
-        p.StrengthBy = StrengthMode::Magnitude;
+        p.StrengthMode = StrengthMode::Magnitude;
         p.ReferenceMagnitude = 2.0;
       } },
     { "EigenvalueSum 2", [](P& p) { p.EigenvalueSum = 2.0; } },
@@ -265,7 +265,7 @@ const std::vector<Variant>& Variants()
       {
         p.LatticeWindow = false;
         p.StreakLength = 1.0;
-        p.Normalize = Normalization::None;
+        p.Normalization = Normalization::None;
       } },
     { "AnisotropicWeight off",
       [](P& p)
@@ -278,7 +278,7 @@ const std::vector<Variant>& Variants()
       {
         p.LatticeWindow = true;
         p.AnisotropicWeight = false;
-        p.Normalize = Normalization::None;
+        p.Normalization = Normalization::None;
         p.Quality = 0;
       } },
     { "MetricInProjection off", [](P& p) { p.MetricInProjection = false; } },
@@ -288,7 +288,7 @@ const std::vector<Variant>& Variants()
         p.MetricInProjection = false;
         p.Motion = true;
         p.Phase = 0.3;
-        p.Grid = Lattice::Jittered;
+        p.Lattice = Lattice::Jittered;
       } },
     { "AnisotropicWeight and MetricInProjection off, Perlin, None",
       [](P& p)
@@ -296,18 +296,18 @@ const std::vector<Variant>& Variants()
         p.LatticeWindow = true;
         p.AnisotropicWeight = false;
         p.MetricInProjection = false;
-        p.Normalize = Normalization::None;
+        p.Normalization = Normalization::None;
         p.Quality = 0;
-        p.Gradients = GradientSet::Perlin;
+        p.GradientSet = GradientSet::Perlin;
       } },
     { "AnisotropicWeight off, Cubic, Octaves 2, Period",
       [](P& p)
       {
         p.LatticeWindow = true;
         p.AnisotropicWeight = false;
-        p.Normalize = Normalization::None;
+        p.Normalization = Normalization::None;
         p.Quality = 0;
-        p.Interpolant = Fade::Cubic;
+        p.Fade = Fade::Cubic;
         p.Octaves = 2;
         p.Period = { 4, 5, 3 };
       } },
@@ -324,16 +324,16 @@ const std::vector<Variant>& Variants()
     { "Wide, Jittered, Motion",
       [](P& p)
       {
-        p.Interpolant = Fade::Wide;
-        p.Grid = Lattice::Jittered;
+        p.Fade = Fade::Wide;
+        p.Lattice = Lattice::Jittered;
         p.Motion = true;
         p.Phase = 0.4;
       } },
     { "Streaks, Motion, Jittered",
       [](P& p)
       {
-        p.Surflet = Basis::Streaks;
-        p.Grid = Lattice::Jittered;
+        p.Basis = Basis::Streaks;
+        p.Lattice = Lattice::Jittered;
         p.Motion = true;
         p.Phase = 0.77;
         p.Speed = -1.5;
@@ -342,17 +342,17 @@ const std::vector<Variant>& Variants()
     { "Value, Simplicial, Radial, Turbulence, Octaves 2",
       [](P& p)
       {
-        p.Surflet = Basis::Value;
-        p.Grid = Lattice::Simplicial;
-        p.Window = Falloff::Radial;
+        p.Basis = Basis::Value;
+        p.Lattice = Lattice::Simplicial;
+        p.Falloff = Falloff::Radial;
         p.Turbulence = true;
         p.Octaves = 2;
       } },
     { "Perlin, Cubic, Period, Motion",
       [](P& p)
       {
-        p.Gradients = GradientSet::Perlin;
-        p.Interpolant = Fade::Cubic;
+        p.GradientSet = GradientSet::Perlin;
+        p.Fade = Fade::Cubic;
         p.Period = { 3, 6, 5 };
         p.Motion = true;
         p.Phase = 0.1;
@@ -360,15 +360,15 @@ const std::vector<Variant>& Variants()
     { "Streaks, Simplicial, no window",
       [](P& p)
       {
-        p.Surflet = Basis::Streaks;
-        p.Grid = Lattice::Simplicial;
+        p.Basis = Basis::Streaks;
+        p.Lattice = Lattice::Simplicial;
         p.LatticeWindow = false;
         p.StreakLength = 2.0;
       } },
     { "Wide, Motion, no window",
       [](P& p)
       {
-        p.Interpolant = Fade::Wide;
+        p.Fade = Fade::Wide;
         p.LatticeWindow = false;
         p.Motion = true;
         p.Phase = 0.6;
@@ -379,27 +379,27 @@ const std::vector<Variant>& Variants()
       {
         p.LatticeWindow = true;
         p.AnisotropicWeight = false;
-        p.Window = Falloff::Radial;
-        p.Grid = Lattice::Jittered;
-        p.Gradients = GradientSet::Perlin;
+        p.Falloff = Falloff::Radial;
+        p.Lattice = Lattice::Jittered;
+        p.GradientSet = GradientSet::Perlin;
       } },
     { "Jittered, Period, Wide, Radial, Value",
       [](P& p)
       {
-        p.Grid = Lattice::Jittered;
+        p.Lattice = Lattice::Jittered;
         p.Period = { 4, 4, 4 };
-        p.Interpolant = Fade::Wide;
-        p.Window = Falloff::Radial;
-        p.Surflet = Basis::Value;
+        p.Fade = Fade::Wide;
+        p.Falloff = Falloff::Radial;
+        p.Basis = Basis::Value;
       } },
     { "Simplicial, Motion, Strength by Magnitude, Cubic",
       [](P& p)
       {
-        p.Grid = Lattice::Simplicial;
+        p.Lattice = Lattice::Simplicial;
         p.Motion = true;
         p.Phase = 0.5;
-        p.StrengthBy = StrengthMode::Magnitude;
-        p.Interpolant = Fade::Cubic;
+        p.StrengthMode = StrengthMode::Magnitude;
+        p.Fade = Fade::Cubic;
       } },
   };
   return variants;
@@ -572,15 +572,15 @@ std::vector<NoiseParameters> ParametersOfSplits()
     NoiseParameters* const four = all.data() + all.size() - 4;
     four[1].Motion = true;
     four[1].Phase = 0.3;
-    four[1].Grid = Lattice::Jittered;
+    four[1].Lattice = Lattice::Jittered;
     four[2].Octaves = 3;
-    four[2].Normalize = Normalization::WeightSum;
-    four[3].Surflet = Basis::Streaks;
+    four[2].Normalization = Normalization::WeightSum;
+    four[3].Basis = Basis::Streaks;
     four[3].Period = { 4, 4, 4 };
   }
   all.push_back(PaperModel(0));
   all.back().FollowCurvature = false;
-  all.back().Normalize = Normalization::None;
+  all.back().Normalization = Normalization::None;
   all.push_back(PaperModel(8));
   return all;
 }
@@ -807,7 +807,7 @@ TEST(SteerableNoise, EqualsTheReferenceOnImages)
       for (Normalization normalization : { Normalization::UnitVariance, Normalization::None })
       {
         parameters.FollowCurvature = curved;
-        parameters.Normalize = normalization;
+        parameters.Normalization = normalization;
         parameters.FeatureSize = 1.5;
         const std::string family = std::string(" image") + (curved ? ", curved" : "");
         const double bound = curved ? CurvedImageBound : Bound;
@@ -829,12 +829,12 @@ TEST(SteerableNoise, EqualsTheReferenceInTheCellsOfImages)
       {
         NoiseParameters parameters = PaperModel(0);
         parameters.FollowCurvature = false;
-        parameters.Normalize = Normalization::None;
+        parameters.Normalization = Normalization::None;
         parameters.FeatureSize = 1.5;
         parameters.AnisotropicWeight = false;
         parameters.MetricInProjection = metric;
-        parameters.Interpolant = fade;
-        parameters.Gradients = gradients;
+        parameters.Fade = fade;
+        parameters.GradientSet = gradients;
         ExpectReferenceOfImages<2>(parameters, SmallGrid(2), Swirl, "2D cells", Bound);
         ExpectReferenceOfImages<3>(parameters, SmallGrid(3), Swirl, "3D cells", Bound);
         // Steps of more than a cell have lanes hashed by themselves.
@@ -897,7 +897,7 @@ TEST(SteerableNoise, EqualsTheReferenceOnUnusualImages)
     }
   }
   // Oblique axes in space.
-  parameters.Grid = Lattice::Simplicial;
+  parameters.Lattice = Lattice::Simplicial;
   grid = SmallGrid(3);
   grid.Dimensions = { 9, 5, 3 };
   ExpectReferenceOfImages<3>(parameters, grid, Swirl, "3D image, simplicial", VariantBound);
@@ -984,30 +984,30 @@ TEST(SteerableNoise, HasTheSameBitsAloneAndAmongItsNeighbours)
   other.Motion = true;
   other.Phase = 0.3;
   all.push_back(other);
-  other.Surflet = Basis::Streaks;
+  other.Basis = Basis::Streaks;
   all.push_back(other);
   other.Motion = false;
-  other.Grid = Lattice::Jittered;
+  other.Lattice = Lattice::Jittered;
   all.push_back(other);
-  other.Surflet = Basis::Gradient;
+  other.Basis = Basis::Gradient;
   all.push_back(other);
-  other.Grid = Lattice::Simplicial;
-  other.Interpolant = Fade::Wide;
+  other.Lattice = Lattice::Simplicial;
+  other.Fade = Fade::Wide;
   all.push_back(other);
   // Long and fast ones, of which much reaches far.
   NoiseParameters far;
   far.FeatureSize = 1.0;
   far.StreakLength = 16.0;
   far.EigenvalueSum = 8.0;
-  far.Normalize = Normalization::None;
+  far.Normalization = Normalization::None;
   all.push_back(far);
   far.Motion = true;
   far.Speed = 4.0;
   all.push_back(far);
   far.Motion = false;
   far.FollowCurvature = false;
-  far.Surflet = Basis::Value;
-  far.Grid = Lattice::Simplicial;
+  far.Basis = Basis::Value;
+  far.Lattice = Lattice::Simplicial;
   all.push_back(far);
   for (std::int64_t target : SimdLevels())
   {
@@ -1180,7 +1180,7 @@ TEST(SteerableNoise, HasTheSameStatisticsFarFromTheOrigin)
 
 TEST(SteerableNoise, VisitsTheCornersOfTheEllipsoidOnly)
 {
-  // The table of Documentation/noise-model.md, section 7.
+  // With the window, by Quality: lattice points of its cube that the ellipsoid holds, in the plane and in space.
   const std::map<int, std::array<double, 2>> table = { { 0, { 2.1, 3.1 } }, { 2, { 3.9, 5.5 } },
     { 4, { 5.0, 6.9 } }, { 8, { 6.7, 9.0 } } };
   for (const auto& [quality, expected] : table)
@@ -1217,7 +1217,7 @@ TEST(SteerableNoise, VisitsTheCornersOfTheEllipsoidOnly)
   // Unnormalised Quality 0 takes the corners of the cell as they are.
   NoiseParameters cell = PaperModel(0);
   cell.FollowCurvature = false;
-  cell.Normalize = Normalization::None;
+  cell.Normalization = Normalization::None;
   EXPECT_EQ(CountCorners<2>(cell).Visited, 4.0);
   EXPECT_EQ(CountCorners<3>(cell).Visited, 8.0);
 }
@@ -1358,8 +1358,8 @@ TEST(SteerableNoise, TakesAMetricOfTheUsersOwn)
   ExpectNoiseOfMetrics<2>(PaperModel(4), 1e-3, 16.0);
   ExpectNoiseOfMetrics<3>(PaperModel(1), 1e-3, 16.0);
   NoiseParameters variant;
-  variant.Interpolant = Fade::Cubic;
-  variant.Grid = Lattice::Jittered;
+  variant.Fade = Fade::Cubic;
+  variant.Lattice = Lattice::Jittered;
   variant.Octaves = 2;
   ExpectNoiseOfMetrics<2>(variant, 0.1, 4.0);
 
@@ -1388,11 +1388,11 @@ TEST(SteerableNoise, TakesLengthStrengthAndSumOfEverySample)
 {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   NoiseParameters weights;
-  weights.Normalize = Normalization::WeightSum;
+  weights.Normalization = Normalization::WeightSum;
   NoiseParameters cells = PaperModel(0);
-  cells.Normalize = Normalization::None;
+  cells.Normalization = Normalization::None;
   NoiseParameters magnitude;
-  magnitude.StrengthBy = StrengthMode::Magnitude;
+  magnitude.StrengthMode = StrengthMode::Magnitude;
   magnitude.ReferenceMagnitude = 2.0;
   for (NoiseParameters parameters :
     { NoiseParameters(), PaperModel(3), weights, cells, magnitude })
@@ -1421,7 +1421,7 @@ TEST(SteerableNoise, TakesLengthStrengthAndSumOfEverySample)
         take(own.StreakLength, shapes[3 * i], 1.0, 20.0);
         take(own.Strength, shapes[3 * i + 1], 0.0, 1.0);
         take(own.EigenvalueSum, shapes[3 * i + 2], 2.0,
-          own.Normalize == Normalization::WeightSum ? 4.0 : 16.0);
+          own.Normalization == Normalization::WeightSum ? 4.0 : 16.0);
         slow.push_back(SteerableNoiseReference<3>(
           parameters, samples.GetPosition<3>(i), ReferenceMetric<3>(own, samples, i, steering)));
       }
@@ -1439,7 +1439,7 @@ TEST(SteerableNoise, TakesLengthStrengthAndSumOfEverySample)
       SteerableNoise(parameters, 3)
         .EvaluatePoints(positions, field, 0, samples.Count, noise.data());
       EXPECT_LE(LargestDifference(noise, slow),
-        parameters.Normalize == Normalization::WeightSum ? 2e-5 : LooseBound)
+        parameters.Normalization == Normalization::WeightSum ? 2e-5 : LooseBound)
         << static_cast<int>(steering) << ", Quality " << parameters.Quality;
     }
   }
@@ -1451,7 +1451,7 @@ TEST(SteerableNoise, IsIsotropicWhereNothingSteers)
   const auto expect = [](const Variant& variant, NoiseParameters parameters)
   {
     variant.Change(parameters);
-    if (parameters.Surflet == Basis::Streaks)
+    if (parameters.Basis == Basis::Streaks)
     {
       return;
     }
@@ -1543,7 +1543,7 @@ TEST(SteerableNoise, NeighboursWithoutADirectionChangeNoBits)
 {
   NoiseParameters parameters = PaperModel(0);
   parameters.FollowCurvature = false;
-  parameters.Normalize = Normalization::None;
+  parameters.Normalization = Normalization::None;
   RandomSamples samples(600, 30.0, 0.0, 4);
   for (std::size_t i = 0; i < samples.Count; i += 7)
   {
@@ -1773,7 +1773,7 @@ TEST(SteerableNoise, RefusesWhatItCannotDo)
   Field field;
   EXPECT_THROW(plane.EvaluatePoints(positions, field, 0, 1, &noise), std::invalid_argument);
   NoiseParameters streaks;
-  streaks.Surflet = Basis::Streaks;
+  streaks.Basis = Basis::Streaks;
   field.Isotropic = true;
   EXPECT_THROW(SteerableNoise(streaks, 2).EvaluatePoints(positions, field, 0, 1, &noise),
     std::invalid_argument);
@@ -1826,7 +1826,7 @@ TEST(SteerableNoise, ValidatesItsParameters)
       [](P& p)
       {
         p.EigenvalueSum = 6.0;
-        p.Normalize = Normalization::WeightSum;
+        p.Normalization = Normalization::WeightSum;
       } },
     { "Strength", [](P& p) { p.Strength = -0.1; } },
     { "Strength", [](P& p) { p.Strength = 1.1; } },
@@ -1834,13 +1834,13 @@ TEST(SteerableNoise, ValidatesItsParameters)
     { "ReferenceMagnitude",
       [](P& p)
       {
-        p.StrengthBy = StrengthMode::Magnitude;
+        p.StrengthMode = StrengthMode::Magnitude;
         p.ReferenceMagnitude = 0.0;
       } },
     { "ReferenceMagnitude",
       [=](P& p)
       {
-        p.StrengthBy = StrengthMode::Magnitude;
+        p.StrengthMode = StrengthMode::Magnitude;
         p.ReferenceMagnitude = nan;
       } },
     { "MaskThreshold", [](P& p) { p.MaskThreshold = -1.0; } },
@@ -1864,7 +1864,7 @@ TEST(SteerableNoise, ValidatesItsParameters)
       [](P& p)
       {
         p.Period[1] = 4;
-        p.Grid = Lattice::Simplicial;
+        p.Lattice = Lattice::Simplicial;
       } },
     { "Period", // 2^10 cells, times 8^15 in the last octave: more than an index holds
       [](P& p)
@@ -1914,7 +1914,7 @@ TEST(SteerableNoise, ValidatesItsParameters)
     [](P& p) {
       p.Period = { 1, 1, 1 };
     },
-    [](P& p) { p.Normalize = Normalization::WeightSum; } };
+    [](P& p) { p.Normalization = Normalization::WeightSum; } };
   for (const auto& change : accepted)
   {
     P parameters;

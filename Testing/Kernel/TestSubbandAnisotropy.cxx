@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /// Length over width of steered features, by another quadrature than the one that calibrates it.
-#include "SubbandAnisotropy.h"
+#include "Subband/SubbandAnisotropy.h"
 #include "SubbandSpectrum.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SubbandFilters.h"
+#include "Subband/SubbandFilters.h"
 
 #include <Eigen/LU>
 

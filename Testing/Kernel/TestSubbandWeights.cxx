@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Subband/SubbandTiles.h"
+#include "Subband/SubbandWeights.h"
+#include "Subband/SurfaceMetric.h"
 #include "SubbandSpectrum.h"
-#include "SubbandTiles.h"
-#include "SubbandWeights.h"
-#include "SurfaceMetric.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -97,7 +97,7 @@ struct CurvedTile
       }
       block.BentAlong[i] = static_cast<float>(1.0 / 25.0 + 0.002 * static_cast<double>(i % 5));
       block.BentAcross[i] = static_cast<float>(1.7 + 0.02 * static_cast<double>(i % 3));
-      block.Sense[i] = 1.0f;
+      block.Directed[i] = 1.0f;
     }
     for (std::size_t i = 0; i < count; i += Lanes)
     {

@@ -356,7 +356,7 @@ STAGE_INLINE void AddCells(const NoiseSetup& setup, const OctaveSetup& octave, M
   const V along = AtStrength(range.Along, strength);
   const V across = AtStrength(range.Across, strength);
   const bool weighted = setup.Parameters.AnisotropicWeight;
-  const bool squares = setup.Parameters.Normalize == Normalization::UnitVariance;
+  const bool squares = setup.Parameters.Normalization == Normalization::UnitVariance;
   const bool metric = weighted || setup.Parameters.MetricInProjection;
   for (std::size_t i = 0; i < count; i += Lanes)
   {

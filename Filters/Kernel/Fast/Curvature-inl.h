@@ -228,7 +228,7 @@ HWY_NOINLINE void BendMetrics(const NoiseSetup& setup, const OctaveSetup& octave
   for (std::size_t i = at; i < at + count; i += Lanes)
   {
     const V one = Const(1.0f);
-    const V scale = hn::Mul(Load(block.Sense + i), Const(octave.CellSize));
+    const V scale = hn::Mul(Load(block.Directed + i), Const(octave.CellSize));
     V bend[N];
     V u[N];
     for (int axis = 0; axis < N; ++axis)

@@ -69,14 +69,14 @@ struct ImageOctave
     }
     for (std::size_t i = 0; i + Lanes <= this->Window.size(); i += Lanes)
     {
-      hn::StoreU(CellWindow(setup.Parameters.Interpolant, Load(this->Fraction.data() + i)), DF(),
+      hn::StoreU(CellWindow(setup.Parameters.Fade, Load(this->Fraction.data() + i)), DF(),
         this->Window.data() + i);
     }
     if (serve)
     {
       const auto columns = static_cast<std::size_t>(cells.back() - firstColumn + 2);
       this->Rows = std::make_unique<GradientRows<N>>(
-        octave, setup.Parameters.Gradients, firstColumn, columns);
+        octave, setup.Parameters.GradientSet, firstColumn, columns);
     }
   }
 };
@@ -152,7 +152,7 @@ void PairMetrics(const NoiseSetup& setup, std::size_t rows, std::size_t columns,
   {
     PairRows(block.Second, rows, columns);
   }
-  for (float* array : { block.Along, block.Across, block.Sense })
+  for (float* array : { block.Along, block.Across, block.Directed })
   {
     PairRows(array, rows, columns);
   }
@@ -212,7 +212,7 @@ void LocatePatch(const NoiseSetup& setup, const ImageGrid& grid, const OctaveSet
   {
     const std::size_t at = Patch::At(r);
     const std::size_t row[3] = { 0, r, 0 };
-    if (setup.Parameters.Grid == Lattice::Simplicial)
+    if (setup.Parameters.Lattice == Lattice::Simplicial)
     {
       for (std::size_t i = 0; i < patch.Columns; ++i)
       {
@@ -258,7 +258,7 @@ void AddRowOfCells(const NoiseSetup& setup, const ImageGrid& grid, const OctaveS
     const double floored = std::floor(place);
     cell[axis] = static_cast<std::int64_t>(floored);
     fraction[axis] = Const(static_cast<float>(place - floored));
-    window[axis] = CellWindow(setup.Parameters.Interpolant, fraction[axis]);
+    window[axis] = CellWindow(setup.Parameters.Fade, fraction[axis]);
   }
   const auto getPlaces = [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
   {
@@ -281,7 +281,7 @@ void AddRowOfCells(const NoiseSetup& setup, const ImageGrid& grid, const OctaveS
   }
   else
   {
-    LaneCorners<N> corners(octave, setup.Parameters.Gradients);
+    LaneCorners<N> corners(octave, setup.Parameters.GradientSet);
     AddCells<N>(setup, octave, block, patch.Columns, direct, corners, visited, getPlaces);
   }
 }
@@ -373,7 +373,7 @@ EvaluationCounts EvaluateImage(const NoiseSetup& setup, const ImageGrid& grid, c
       if (!setup.SingleCell)
       {
         PairRows(block->Noise, RowsOfRegisters(patch.Rows), patch.Columns);
-        PairRows(block->Sense, RowsOfRegisters(patch.Rows), patch.Columns);
+        PairRows(block->Directed, RowsOfRegisters(patch.Rows), patch.Columns);
       }
       for (std::size_t r = 0; r < patch.Rows && !uniform; ++r)
       {

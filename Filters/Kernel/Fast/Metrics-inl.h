@@ -236,7 +236,7 @@ HWY_NOINLINE void MetricsOfDirections(
     }
     const auto there = hn::Ne(hn::Abs(some), zero);
     V strength = Const(static_cast<float>(p.Strength));
-    if (p.StrengthBy == StrengthMode::Magnitude)
+    if (p.StrengthMode == StrengthMode::Magnitude)
     {
       const V share =
         hn::Div(Load(block.Length + i), Const(static_cast<float>(p.ReferenceMagnitude)));
@@ -245,7 +245,7 @@ HWY_NOINLINE void MetricsOfDirections(
     strength = hn::IfThenElseZero(there, strength);
     hn::StoreU(hn::IfThenElse(there, u0, one), DF(), block.U[0] + i);
     hn::StoreU(AtStrength(range.Along, strength), DF(), block.Along + i);
-    hn::StoreU(hn::IfThenElseZero(there, one), DF(), block.Sense + i);
+    hn::StoreU(hn::IfThenElseZero(there, one), DF(), block.Directed + i);
     if (!setup.Biaxial)
     {
       hn::StoreU(AtStrength(range.Across, strength), DF(), block.Across + i);
@@ -288,7 +288,7 @@ void ReshapeMetrics(const NoiseSetup& setup, const float* shapes, const float* n
   for (std::size_t i = 0; i < count; ++i)
   {
     const std::size_t to = at + i;
-    if (block.Sense[to] == 0.0f)
+    if (block.Directed[to] == 0.0f)
     {
       continue;
     }
@@ -317,7 +317,7 @@ void PadTail(MetricBlock& block, std::size_t end)
   const auto pad = [end](auto* array) { std::fill_n(array + end, Lanes, array[end - 1]); };
   for (float* array : { block.U[0], block.U[1], block.U[2], block.M[0], block.M[1], block.M[2],
          block.URest[0], block.URest[1], block.Bend[0], block.Bend[1], block.Bend[2], block.Along,
-         block.Across, block.Second, block.Sense })
+         block.Across, block.Second, block.Directed })
   {
     pad(array);
   }
@@ -352,7 +352,7 @@ void MetricsOfTensors(const NoiseSetup& setup, const Value* tuples, const float*
     block.Along[to] = static_cast<float>(metric.Along);
     block.Across[to] = static_cast<float>(metric.Across);
     block.Second[to] = static_cast<float>(metric.Second);
-    block.Sense[to] = metric.Degenerate ? 0.0f : 1.0f;
+    block.Directed[to] = metric.Degenerate ? 0.0f : 1.0f;
     for (int axis = 0; axis < N && setup.Curved; ++axis)
     {
       block.Bend[axis][to] *= static_cast<float>(metric.Clarity);
@@ -402,7 +402,7 @@ inline void MetricsOfNothing(std::size_t at, std::size_t count, MetricBlock& blo
     fill(block.U[axis], axis == 0 ? 1.0f : 0.0f);
     fill(block.M[axis], axis == 1 ? 1.0f : 0.0f);
   }
-  for (float* array : { block.URest[0], block.URest[1], block.Length, block.Sense })
+  for (float* array : { block.URest[0], block.URest[1], block.Length, block.Directed })
   {
     fill(array, 0.0f);
   }

@@ -25,7 +25,7 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
 {
   constexpr std::size_t half = hn::MaxLanes(DD());
   HWY_ALIGN double tail[3 * half] = {};
-  const bool oblique = !Plain && setup.Parameters.Grid == Lattice::Simplicial;
+  const bool oblique = !Plain && setup.Parameters.Lattice == Lattice::Simplicial;
   const VD scale = hn::Set(DD(), octave.CellsPerUnit);
   // Adding this leaves the integer, modulo 2^32, in the low bits.
   const VD toInteger = hn::Set(DD(), 6755399441055744.0);
@@ -131,7 +131,7 @@ void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double*
   locate(setup, octave, positions, 0, count, block);
   if (setup.SingleCell)
   {
-    LaneCorners<N> corners(octave, setup.Parameters.Gradients);
+    LaneCorners<N> corners(octave, setup.Parameters.GradientSet);
     AddCells<N>(setup, octave, block, count, direct, corners, visited,
       [&](std::size_t i, Places<N>& places, V(&near)[N]) HWY_ATTR
       {
@@ -139,7 +139,7 @@ void AddPoints(const NoiseSetup& setup, const OctaveSetup& octave, const double*
         {
           places.Cell[axis] = hn::LoadU(DU(), block.Cell[axis] + i);
           places.Fraction[axis] = Load(block.Fraction[axis] + i);
-          near[axis] = CellWindow(setup.Parameters.Interpolant, places.Fraction[axis]);
+          near[axis] = CellWindow(setup.Parameters.Fade, places.Fraction[axis]);
         }
       });
     return;
@@ -158,7 +158,7 @@ void Finish(const NoiseSetup& setup, MetricBlock& block, std::size_t at, std::si
   float* noise, EvaluationCounts& counts)
 {
   float* const from = block.Noise + at;
-  float* const there = block.Sense + at;
+  float* const there = block.Directed + at;
   const auto threshold = static_cast<float>(setup.Parameters.MaskThreshold);
   V senses = hn::Zero(DF());
   HWY_ALIGN float sense[Lanes];

@@ -106,8 +106,8 @@ struct MetricBlock
   alignas(64) float Bend[3][BlockRoom];
   /// Length of the vector (Frobenius norm of the tensor).
   alignas(64) float Length[BlockRoom];
-  /// 1 with a direction, 0 without.
-  alignas(64) float Sense[BlockRoom];
+  /// 1 with a direction, 0 without: then there is no noise.
+  alignas(64) float Directed[BlockRoom];
   /// What the curvature makes of these in one octave, see BendMetrics.
   alignas(64) float BentAlong[BlockRoom];
   alignas(64) float BentAcross[BlockRoom];

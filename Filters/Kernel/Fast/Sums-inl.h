@@ -35,7 +35,7 @@ struct Sums
 /// is one.
 inline float VarianceShare(const NoiseParameters& p, int dimension)
 {
-  switch (p.Surflet)
+  switch (p.Basis)
   {
     case Basis::Value:
       return 1.0f / 3.0f;
@@ -43,13 +43,13 @@ inline float VarianceShare(const NoiseParameters& p, int dimension)
       return static_cast<float>(p.GetStreakProbability());
     case Basis::Gradient:
     default:
-      return static_cast<float>(GradientVariance(p.Gradients, dimension));
+      return static_cast<float>(GradientVariance(p.GradientSet, dimension));
   }
 }
 
 STAGE_INLINE V Normalized(const NoiseSetup& setup, int dimension, const Sums& sums)
 {
-  switch (setup.Parameters.Normalize)
+  switch (setup.Parameters.Normalization)
   {
     case Normalization::WeightSum:
       return hn::IfThenElseZero(

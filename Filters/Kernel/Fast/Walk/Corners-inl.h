@@ -69,11 +69,11 @@ STAGE_INLINE Corner<N> Describe(const Walk& walk, const V (&offset)[N], VU hash)
 {
   Corner<N> corner;
   if (!Walk::Variant ||
-    (walk.Params.Surflet == Basis::Gradient && walk.Params.Gradients == GradientSet::Uniform))
+    (walk.Params.Basis == Basis::Gradient && walk.Params.GradientSet == GradientSet::Uniform))
   {
     UniformGradient(hash, corner.Gradient);
   }
-  else if (walk.Params.Surflet == Basis::Gradient)
+  else if (walk.Params.Basis == Basis::Gradient)
   {
     PerlinGradient<N>(hash, corner.Gradient);
   }
@@ -103,7 +103,7 @@ STAGE_INLINE Corner<N> Describe(const Walk& walk, const V (&offset)[N], VU hash)
       const V wave = CosPi(centered); // sin(π τ)
       corner.Amplitude = hn::Mul(hn::Mul(wave, wave), Const(static_cast<float>(MotionAmplitude)));
     }
-    if (walk.Params.Surflet == Basis::Streaks)
+    if (walk.Params.Basis == Basis::Streaks)
     {
       const auto on = hn::Lt(HashToUnit(HashStream(hash, 2)),
         Const(static_cast<float>(walk.Params.GetStreakProbability())));

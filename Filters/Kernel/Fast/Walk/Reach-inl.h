@@ -184,11 +184,11 @@ STAGE_INLINE VI ToCorners(V place)
   return hn::ConvertTo(DI(), hn::Max(hn::Min(place, Const(1000.0f)), Const(-1000.0f)));
 }
 
-/// How an index of the lattice changes along the flow, and with it across.
+/// How an index of the lattice changes with the place.
 struct IndexAxis
 {
-  V Along;
-  V InverseAlong;
+  V Rate; // along the flow
+  V InverseRate;
   V Bend;
   V Width;
   V BoxLow;
@@ -208,25 +208,25 @@ template <int N, class Walk>
 STAGE_INLINE IndexAxis GetIndexAxis(const Walk& walk, const Reach<N>& reach, int axis)
 {
   IndexAxis result;
-  result.Along = reach.U[axis];
+  result.Rate = reach.U[axis];
   result.Bend = reach.Bend[axis];
   float w2 = 1.0f;
   if (walk.IsOblique())
   {
-    result.Along = result.Bend = hn::Zero(DF());
+    result.Rate = result.Bend = hn::Zero(DF());
     w2 = 0.0f;
     for (int i = 0; i < N; ++i)
     {
       const auto w = static_cast<float>(walk.Setup.LatticeIndices[axis][i]);
-      result.Along = hn::MulAdd(Const(w), reach.U[i], result.Along);
+      result.Rate = hn::MulAdd(Const(w), reach.U[i], result.Rate);
       result.Bend = hn::MulAdd(Const(w), reach.Bend[i], result.Bend);
       w2 += w * w;
     }
   }
   const V across =
-    hn::Sqrt(hn::Max(hn::NegMulAdd(result.Along, result.Along, Const(w2)), hn::Zero(DF())));
+    hn::Sqrt(hn::Max(hn::NegMulAdd(result.Rate, result.Rate, Const(w2)), hn::Zero(DF())));
   result.Width = hn::Mul(hn::Add(reach.LargestWidth, GetLooseness(walk, reach)), across);
-  result.InverseAlong = Inverse(result.Along);
+  result.InverseRate = Inverse(result.Rate);
   // Window and jitter are boxes of places; oblique indices need √3 times as many to cover them.
   const float more = walk.IsOblique() ? 1.75f : 1.0f;
   const V box =
@@ -262,8 +262,8 @@ STAGE_INLINE void Narrow(const Walk& walk, const Reach<N>& reach, int number,
     {
       GetSag(axis.Bend, low, high, least, greatest);
     }
-    const V a = hn::Mul(hn::Sub(hn::Sub(offset, axis.Width), greatest), axis.InverseAlong);
-    const V b = hn::Mul(hn::Sub(hn::Add(offset, axis.Width), least), axis.InverseAlong);
+    const V a = hn::Mul(hn::Sub(hn::Sub(offset, axis.Width), greatest), axis.InverseRate);
+    const V b = hn::Mul(hn::Sub(hn::Add(offset, axis.Width), least), axis.InverseRate);
     low = hn::Max(low, hn::Min(a, b));
     high = hn::Min(high, hn::Max(a, b));
   }
@@ -284,8 +284,8 @@ STAGE_INLINE void GetRange(const Walk& walk, const Reach<N>& reach, int number,
     {
       GetSag(axis.Bend, low, high, least, greatest);
     }
-    const V a = hn::Mul(low, axis.Along);
-    const V b = hn::Mul(high, axis.Along);
+    const V a = hn::Mul(low, axis.Rate);
+    const V b = hn::Mul(high, axis.Rate);
     const V place = hn::Sub(reach.Place[number], Const(walk.Setup.JitterMiddle));
     first = hn::Max(first, hn::Add(place, hn::Sub(hn::Add(hn::Min(a, b), least), axis.Width)));
     last = hn::Min(last, hn::Add(place, hn::Add(hn::Add(hn::Max(a, b), greatest), axis.Width)));
@@ -355,7 +355,7 @@ STAGE_INLINE void CutRows(
     const V endX = hn::Mul(hn::Sub(end, s0), inverse);
     const V farthest = hn::Add(hn::Max(hn::Abs(begin), hn::Abs(end)), radius);
     V off = hn::Add(Quadratic(reach.Across, farthest), looseness);
-    off = hn::Add(off, Const(1e-3f));
+    off = hn::Add(off, Const(Slack));
     V t[AxesAcross<N>];
     V change[AxesAcross<N>];
     std::copy(t0, t0 + AxesAcross<N>, t);
@@ -401,7 +401,7 @@ STAGE_INLINE void CutRows(
     begin = end;
     beginX = endX;
   }
-  const V slack = hn::Add(reach.RowSpread, Const(1e-3f));
+  const V slack = hn::Add(reach.RowSpread, Const(Slack));
   low = hn::Max(low, hn::Sub(least, slack));
   high = hn::Min(high, hn::Add(most, slack));
 }

@@ -37,7 +37,7 @@ struct Sample
   V HalfBend[N];
   V Along;
   V Across;
-  V Sense;
+  V Directed;
   V RootAlong;
   /// What the fraction has of u.
   V AlongFraction;
@@ -59,7 +59,7 @@ struct Sample
     const NoiseSetup& setup, const MetricBlock& block, std::size_t i, const VU (&cell)[N])
     : Along(Load((setup.Curved ? block.BentAlong : block.Along) + i))
     , Across(Load((setup.Curved ? block.BentAcross : block.Across) + i))
-    , Sense(Load(block.Sense + i))
+    , Directed(Load(block.Directed + i))
     , RootAlong(hn::Sqrt(Along))
   {
     for (int axis = 0; axis < N; ++axis)
@@ -126,8 +126,8 @@ STAGE_INLINE V GetWindow(const Walk& walk, const V (&v)[N])
     }
     return window;
   }
-  const Fade fade = walk.Params.Interpolant;
-  if (walk.Params.Window == Falloff::Radial)
+  const Fade fade = walk.Params.Fade;
+  if (walk.Params.Falloff == Falloff::Radial)
   {
     return FadeOf(fade, hn::Mul(hn::Sqrt(Dot(v, v)), walk.InverseReach));
   }
@@ -258,7 +258,7 @@ STAGE_INLINE void Travel(
     sigma = hn::Mul(sample.RootAlong, s);
     if (walk.Params.Motion)
     {
-      sigma = hn::MulAdd(corner.Travel, sample.Sense, sigma);
+      sigma = hn::MulAdd(corner.Travel, sample.Directed, sigma);
       s = hn::Div(sigma, sample.RootAlong);
     }
   }
@@ -574,14 +574,14 @@ template <int N, class Walk>
 STAGE_INLINE V GetWeight(const Walk& walk, const Sample<N>& sample, const LocalFrame<N>& frame)
 {
   const V window = GetWindow(walk, frame.Offset);
-  if (walk.Params.Surflet == Basis::Streaks)
+  if (walk.Params.Basis == Basis::Streaks)
   {
     const V across = hn::Sqrt(hn::Max(frame.Across2, hn::Zero(DF())));
-    return hn::Mul(hn::Mul(window, sample.Sense),
-      hn::Mul(StreakProfile(hn::Neg(frame.Sigma)), FadeOf(walk.Params.Interpolant, across)));
+    return hn::Mul(hn::Mul(window, sample.Directed),
+      hn::Mul(StreakProfile(hn::Neg(frame.Sigma)), FadeOf(walk.Params.Fade, across)));
   }
   return walk.Params.AnisotropicWeight
-    ? hn::Mul(window, FadeOf(walk.Params.Interpolant, frame.Q))
+    ? hn::Mul(window, FadeOf(walk.Params.Fade, frame.Q))
     : window;
 }
 
@@ -592,9 +592,9 @@ STAGE_INLINE void AddVariantSurflet(
 {
   LocalFrame<N> frame = GetLocalFrame(walk, sample, corner);
   const V weight = GetWeight(walk, sample, frame);
-  if (walk.Params.Surflet != Basis::Gradient)
+  if (walk.Params.Basis != Basis::Gradient)
   {
-    frame.Slope = walk.Params.Surflet == Basis::Value ? corner.Gradient[0] : Const(1.0f);
+    frame.Slope = walk.Params.Basis == Basis::Value ? corner.Gradient[0] : Const(1.0f);
     frame.Slope2 = Const(1.0f);
   }
   sums.Noise = hn::MulAdd(hn::Mul(corner.Amplitude, weight), frame.Slope, sums.Noise);

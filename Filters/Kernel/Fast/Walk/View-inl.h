@@ -34,14 +34,14 @@ struct Span
   V UStep[2][AxesAcross<N>];
   V BendStep[2][AxesAcross<N>];
   const Group<N>& Whole;
-  const Extent& Surflet;
+  const Extent& Size;
 
   STAGE_INLINE Span(const Tile& tile, const SpanCorners& corners, std::size_t begin,
     std::size_t end, const Group<N>& group, const Extent& extent)
     : Begin(begin)
     , End(end)
     , Whole(group)
-    , Surflet(extent)
+    , Size(extent)
   {
     ToAcross<N>(group.Bend, group.U, this->Bend);
     for (int k = 0; k < 2; ++k)
@@ -180,10 +180,10 @@ STAGE_INLINE View<N> GetView(const Walk& walk, const Span<N>& span, const V (&co
   }
   const V distance = hn::Abs(s);
   const V shortest = hn::Sub(
-    distance, hn::Add(hn::Add(steps, group.AlongRest), Const(span.Surflet.Travel + loose)));
+    distance, hn::Add(hn::Add(steps, group.AlongRest), Const(span.Size.Travel + loose)));
   view.Width = hn::Add(group.GetRest(hn::Add(distance, Const(loose)), steps),
-    GetTaper(shortest, Const(1.0f / span.Surflet.HalfLength), Const(span.Surflet.HalfWidth),
-      span.Surflet.Tapers));
+    GetTaper(shortest, Const(1.0f / span.Size.HalfLength), Const(span.Size.HalfWidth),
+      span.Size.Tapers));
   return view;
 }
 

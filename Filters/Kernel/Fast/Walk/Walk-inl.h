@@ -408,7 +408,7 @@ private:
   template <bool Curved, bool Biaxial, class Work>
   STAGE_INLINE void WithSums(Work&& work) const
   {
-    switch (this->Setup.Params.Normalize)
+    switch (this->Setup.Params.Normalization)
     {
       case Normalization::UnitVariance:
         return work(SurfletKind<Curved, Normalization::UnitVariance, Biaxial>());

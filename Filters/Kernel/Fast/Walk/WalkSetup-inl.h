@@ -57,10 +57,10 @@ struct WalkSetup
 
   STAGE_INLINE bool IsOblique() const
   {
-    return Variant && this->Params.Grid == Lattice::Simplicial;
+    return Variant && this->Params.Lattice == Lattice::Simplicial;
   }
   STAGE_INLINE bool IsJittered() const { return Variant && this->Setup.JitterRadius > 0.0f; }
-  STAGE_INLINE bool IsStreaks() const { return Variant && this->Params.Surflet == Basis::Streaks; }
+  STAGE_INLINE bool IsStreaks() const { return Variant && this->Params.Basis == Basis::Streaks; }
 
   STAGE_INLINE V GetLeastAcross(std::size_t i) const
   {

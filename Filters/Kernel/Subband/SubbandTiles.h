@@ -12,7 +12,7 @@
 #ifndef SubbandTiles_h
 #define SubbandTiles_h
 
-#include "SubbandFilters.h"
+#include "Subband/SubbandFilters.h"
 
 #include <array>
 #include <complex>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SubbandTiles.h"
+#include "Subband/SubbandTiles.h"
 
 #include "LatticeHash.h"
 

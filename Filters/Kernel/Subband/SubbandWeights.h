@@ -23,7 +23,7 @@
 #ifndef SubbandWeights_h
 #define SubbandWeights_h
 
-#include "SubbandFilters.h"
+#include "Subband/SubbandFilters.h"
 
 #include <Eigen/Core>
 

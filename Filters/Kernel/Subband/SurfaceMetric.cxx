@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
-#include "SurfaceMetric.h"
+#include "Subband/SurfaceMetric.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

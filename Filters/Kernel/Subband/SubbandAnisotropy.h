@@ -10,7 +10,7 @@
 #ifndef SubbandAnisotropy_h
 #define SubbandAnisotropy_h
 
-#include "SubbandWeights.h"
+#include "Subband/SubbandWeights.h"
 
 #include <vector>
 

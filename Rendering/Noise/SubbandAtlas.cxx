@@ -4,6 +4,8 @@
 
 #include "Subband/SubbandTiles.h"
 
+#include "vtkSMPTools.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,6 +24,11 @@ int SizeOf(const SubbandVariant& variant, int scale)
 int BorderOf(const SubbandVariant& variant)
 {
   return variant.Cubic ? 0 : 1;
+}
+
+bool Counts(double weight)
+{
+  return std::abs(weight) > 1e-9;
 }
 
 steerable::SubbandParameters PyramidOf(const SubbandVariant& variant, int scales)
@@ -53,7 +60,7 @@ void SubbandAtlas::Lay()
     {
       for (int group = 0; group < variant.Groups(); ++group)
       {
-        this->Layout.push_back({ scales, scale, group, plane, SizeOf(variant, scale) + 2 * border, 0, 0 });
+        this->Layout.push_back({ scale, group, plane, SizeOf(variant, scale) + 2 * border, 0, 0 });
       }
     }
   };
@@ -113,19 +120,39 @@ vtkIdType SubbandAtlas::GetBytes() const
   return 4 * static_cast<vtkIdType>(this->Width) * this->Height * (this->Variant.Bytes ? 1 : 4);
 }
 
-const std::vector<float>& SubbandAtlas::GetScale(const Tile& tile, int size, int realization)
+void SubbandAtlas::MakeScales(const std::array<double, 4>& weights)
 {
-  // A scale is the same in every pyramid that has it.
-  std::vector<float>& values = this->Made[{ size, tile.Scale, realization }];
-  if (values.empty())
+  std::vector<std::pair<ScaleKey, std::vector<float>*>> missing;
+  for (const Tile& tile : this->Layout)
   {
-    steerable::SubbandParameters pyramid = PyramidOf(this->Variant, tile.Scales);
-    pyramid.Seed = this->Seed;
-    pyramid.Realization = static_cast<std::uint32_t>(realization);
-    values = steerable::MakeScaleTiles(pyramid, tile.Scale, size,
-      this->Variant.Cubic ? steerable::TexelKind::Values : steerable::TexelKind::Bilinear);
+    for (int m = 0; m < 4; ++m)
+    {
+      const ScaleKey key = this->GetKey(tile, m);
+      if (Counts(weights[m]) && !this->Made.count(key))
+      {
+        missing.emplace_back(key, &this->Made[key]);
+      }
+    }
   }
-  return values;
+  vtkSMPTools::For(0, static_cast<vtkIdType>(missing.size()), 1,
+    [&](vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType n = begin; n < end; ++n)
+      {
+        const auto [size, scale, realization] = missing[n].first;
+        // A scale is the same in every pyramid that has it.
+        steerable::SubbandParameters pyramid = PyramidOf(this->Variant, scale + 1);
+        pyramid.Seed = this->Seed;
+        pyramid.Realization = static_cast<std::uint32_t>(realization);
+        *missing[n].second = steerable::MakeScaleTiles(pyramid, scale, size,
+          this->Variant.Cubic ? steerable::TexelKind::Values : steerable::TexelKind::Bilinear);
+      }
+    });
+}
+
+SubbandAtlas::ScaleKey SubbandAtlas::GetKey(const Tile& tile, int m) const
+{
+  return { tile.Side - 2 * BorderOf(this->Variant), tile.Scale, steerable::LoopRealization(tile.Plane, m) };
 }
 
 void SubbandAtlas::Update(const SubbandVariant& variant, std::uint32_t seed, int firstPlane)
@@ -160,17 +187,17 @@ SubbandAtlas::Image SubbandAtlas::Make(const std::array<double, 4>& weights)
   const std::size_t values = 4 * static_cast<std::size_t>(this->Width) * this->Height;
   Image image;
   image.Floats.assign(values, 0.0f);
+  this->MakeScales(weights);
   for (const Tile& tile : this->Layout)
   {
     const int size = tile.Side - 2 * border;
     for (int m = 0; m < 4; ++m)
     {
-      if (std::abs(weights[m]) <= 1e-9)
+      if (!Counts(weights[m]))
       {
         continue;
       }
-      const std::vector<float>& made =
-        this->GetScale(tile, size, steerable::LoopRealization(tile.Plane, m));
+      const std::vector<float>& made = this->Made.at(this->GetKey(tile, m));
       const auto weight = static_cast<float>(weights[m]);
       for (int y = 0; y < tile.Side; ++y)
       {

@@ -55,12 +55,16 @@ public:
 private:
   struct Tile
   {
-    int Scales, Scale, Group, Plane;
+    int Scale, Group, Plane;
     int Side; // with the border
     int X, Y;
   };
   void Lay();
-  const std::vector<float>& GetScale(const Tile& tile, int size, int realization);
+  /// Size, scale and realization.
+  using ScaleKey = std::tuple<int, int, int>;
+  ScaleKey GetKey(const Tile& tile, int m) const;
+  /// Makes what is missing of the realizations that count.
+  void MakeScales(const std::array<double, 4>& weights);
 
   SubbandVariant Variant;
   std::uint32_t Seed = 0;
@@ -72,8 +76,7 @@ private:
   int Height = 0;
   std::vector<float> Tiles;
   std::vector<double> Key;
-  /// By size, scale and realization.
-  std::map<std::tuple<int, int, int>, std::vector<float>> Made;
+  std::map<ScaleKey, std::vector<float>> Made;
   std::vector<double> MadeKey;
 };
 } // namespace noise

@@ -105,6 +105,7 @@ def bake(mesh, side, shown, wavelength):
     weights.SetInputData(mesh)
     weights.SetWavelength(wavelength)
     weights.SetParameterization(vtkPolyDataSubbandNoise.TEXTURE_COORDINATES)
+    weights.SetTileSize(shown.GetTileSize())
     weights.WeightsOnlyOn()
     weights.Update()
     flat = sheet(side, lambda u, v: (u, v, 0 * u), 1.0)

@@ -112,6 +112,7 @@ probe = vtkPolyDataSubbandNoise()
 probe.SetInputData(square)
 probe.SetOrientations(4)
 probe.SetWavelength(0.05)
+probe.SetTileSize(512)  # the mapper's
 probe.WeightsOnlyOn()
 probe.Update()
 weights = vtk_to_numpy(probe.GetOutput().GetPointData().GetArray("SubbandWeights"))

@@ -79,14 +79,14 @@ void SubbandPlan::AgreeOnSurfaces(std::vector<SubbandBlock>& blocks)
         ++this->Own[block.Texture ? SurfaceSums::TexturedBlocks : SurfaceSums::ProjectedBlocks];
       }
     });
-  this->Sums = this->Own;
-  this->Agree(this->Sums, &SubbandAgreement::Sums,
-    [this]
+  this->Agreed.Sums = this->Own;
+  this->Agree(&SubbandAgreement::Sums,
+    [this](SurfaceSums& sums)
     {
-      Reduce(this->Controller, this->Sums.Values.data(), this->Sums.Values.size(),
-        vtkCommunicator::SUM_OP);
+      Reduce(
+        this->Controller, sums.Values.data(), sums.Values.size(), vtkCommunicator::SUM_OP);
     });
-  this->Spacing = GetSpacing(this->Sums, this->Diagonal);
+  this->Spacing = GetSpacing(this->Agreed.Sums, this->Diagonal);
 }
 
 //------------------------------------------------------------------------------
@@ -100,11 +100,11 @@ void SubbandPlan::AddBounds(std::vector<SubbandBlock>& blocks)
       known.emplace();
       known->Add(block.Mesh, HiddenSamples(block.Mesh));
     }
-    this->Bounds.Add(*known);
+    this->Agreed.Bounds.Add(*known);
   }
-  this->Agree(
-    this->Bounds, &SubbandAgreement::Bounds, [this] { this->Bounds.Reduce(this->Controller); });
-  this->Diagonal = this->Bounds.GetDiagonal();
+  this->Agree(&SubbandAgreement::Bounds,
+    [this](CommonBounds& bounds) { bounds.Reduce(this->Controller); });
+  this->Diagonal = this->Agreed.Bounds.GetDiagonal();
 }
 
 //------------------------------------------------------------------------------
@@ -131,8 +131,7 @@ vtkDataArray* SubbandPlan::FindLengths(
 void SubbandPlan::AgreeOnLengths(std::vector<SubbandBlock>& blocks)
 {
   const SubbandProperties& p = this->Properties;
-  constexpr double none = std::numeric_limits<double>::infinity();
-  std::array<double, 3> ends = { none, none, -1.0 }; // least, -greatest, -anisotropy
+  std::array<double, 3>& ends = this->Agreed.Lengths;
   for (SubbandBlock& block : blocks)
   {
     if (!this->Failure.empty())
@@ -156,17 +155,19 @@ void SubbandPlan::AgreeOnLengths(std::vector<SubbandBlock>& blocks)
       ends[2] = std::min(ends[2], -AnisotropyAt(block.Anisotropies, i, 1.0));
     }
   }
-  this->Agree(ends, &SubbandAgreement::Lengths,
-    [&] { Reduce(this->Controller, ends.data(), 3, vtkCommunicator::MIN_OP); });
+  this->Agree(&SubbandAgreement::Lengths,
+    [this](std::array<double, 3>& lengths)
+    { Reduce(this->Controller, lengths.data(), lengths.size(), vtkCommunicator::MIN_OP); });
 
   this->ResolveAnisotropy(-ends[2]);
   this->Wavelength = p.Wavelength;
   if (this->Wavelength <= 0.0)
   {
-    const double finest = p.WeightsOnly
+    // Points that only carry weights are no samples.
+    const double fromPoints = p.WeightsOnly
       ? 0.0
       : SnapSize(PointsPerWavelength * this->Spacing * std::sqrt(this->WantedAnisotropy));
-    this->Wavelength = std::max(this->Bounds.GetSizeInPicture(0.02), finest);
+    this->Wavelength = std::max(this->Agreed.Bounds.GetSizeInPicture(0.02), fromPoints);
     this->Wavelength = this->Wavelength > 0.0 ? this->Wavelength : 1.0;
   }
   this->Wavelengths = { this->Wavelength, this->Wavelength, this->Wavelength };
@@ -209,10 +210,11 @@ void SubbandPlan::AgreeOnTexture(std::vector<SubbandBlock>& blocks)
   {
     this->FindSeams(blocks);
   }
-  const double mapped = this->Sums[SurfaceSums::RegularArea] + this->Sums[SurfaceSums::FlippedArea];
-  this->IsMirrored = this->Sums[SurfaceSums::FlippedArea] > 0.5 * mapped;
+  const SurfaceSums& sums = this->Agreed.Sums;
+  const double mapped = sums[SurfaceSums::RegularArea] + sums[SurfaceSums::FlippedArea];
+  this->IsMirrored = sums[SurfaceSums::FlippedArea] > 0.5 * mapped;
   const double folded =
-    this->Sums[this->IsMirrored ? SurfaceSums::RegularArea : SurfaceSums::FlippedArea];
+    sums[this->IsMirrored ? SurfaceSums::RegularArea : SurfaceSums::FlippedArea];
   this->IsFolded = folded <= LargestFoldedShare * mapped;
   for (SubbandBlock& block : blocks)
   {
@@ -228,7 +230,7 @@ void SubbandPlan::AgreeOnTexture(std::vector<SubbandBlock>& blocks)
 // Charts smaller than a wavelength leave no noise but seams.
 void SubbandPlan::FindCharts(std::vector<SubbandBlock>& blocks)
 {
-  std::array<double, 3> charts = { 0.0, 0.0, 0.0 }; // area of small ones, that of all, and number of small ones
+  std::array<double, 3>& charts = this->Agreed.Charts;
   Attempt(this->Failure,
     [&]
     {
@@ -248,8 +250,9 @@ void SubbandPlan::FindCharts(std::vector<SubbandBlock>& blocks)
         }
       }
     });
-  this->Agree(charts, &SubbandAgreement::Charts,
-    [&] { Reduce(this->Controller, charts.data(), 3, vtkCommunicator::SUM_OP); });
+  this->Agree(&SubbandAgreement::Charts,
+    [this](std::array<double, 3>& all)
+    { Reduce(this->Controller, all.data(), all.size(), vtkCommunicator::SUM_OP); });
   this->IsShattered = charts[0] > 0.5 * charts[1];
   this->SmallCharts = charts[2];
 }
@@ -270,15 +273,15 @@ void SubbandPlan::FindSeams(std::vector<SubbandBlock>& blocks)
             known.emplace();
             known->Add(this->GetSurface(block));
           }
-          this->Seams.Add(*known);
+          this->Agreed.Seams.Add(*known);
         }
       }
     });
-  this->Agree(this->Seams, &SubbandAgreement::Seams,
-    [this]
+  this->Agree(&SubbandAgreement::Seams,
+    [this](SubbandSeams& seams)
     {
-      this->Seams.Gather(this->Controller);
-      this->Seams.Build();
+      seams.Gather(this->Controller);
+      seams.Build();
     });
 }
 
@@ -308,7 +311,7 @@ void SubbandPlan::LayTiles()
   pyramid.TileSize = p.TileSize;
   pyramid.Seed = p.Seed;
   this->Layouts[0] = LayOnPlanes(pyramid, this->Wavelengths, this->LargestSteering);
-  this->Layouts[1] = LayOnTexture(pyramid, this->Sums, this->Diagonal > 0.0 ? this->Diagonal : 1.0,
+  this->Layouts[1] = LayOnTexture(pyramid, this->Agreed.Sums, this->Diagonal > 0.0 ? this->Diagonal : 1.0,
     this->Wavelengths, this->LargestSteering);
   if (this->ImageTiles)
   {
@@ -316,8 +319,11 @@ void SubbandPlan::LayTiles()
     this->Layouts[1] = SubbandLayout();
     this->Layouts[1].Pyramid = this->ImageTiles->Parameters;
   }
-  this->Solvers[0].reset();
-  this->Solvers[1].reset();
+  for (const int ofTexture : { 0, 1 })
+  {
+    this->NoTiles[ofTexture].Parameters = this->Layouts[ofTexture].Pyramid;
+    this->Solvers[ofTexture].reset();
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -343,9 +349,8 @@ void SubbandPlan::AddLookups(bool ofTexture, int firstPlane, std::vector<Subband
   }
   if (this->Properties.WeightsOnly)
   {
-    this->NoTiles[ofTexture].Parameters = layout.Pyramid;
     lookups.insert(
-      lookups.end(), ofTexture ? 1 : 3, SubbandLookup{ &layout, solver, &this->NoTiles[ofTexture] });
+      lookups.end(), ofTexture ? 1 : 3, { &layout, solver, &this->NoTiles[ofTexture] });
     return;
   }
   SubbandTileCache& cache = ofTexture ? this->Tiles->Texture
@@ -367,12 +372,12 @@ SubbandPointWeights SubbandPlan::GetPointWeights(const SubbandBlock& block)
   if (textured && this->BlendsSeams())
   {
     this->AddLookups(false, 1, weights.Lookups);
-    weights.Seams = &this->Seams;
+    weights.Seams = &this->Agreed.Seams;
   }
   weights.Wavelength = this->Wavelength;
   weights.Anisotropy = this->Anisotropy;
   weights.Octaves = this->Properties.Octaves;
-  weights.AntiAlias = this->Properties.AntiAlias;
+  weights.AntiAlias = this->Properties.AntiAlias && !this->Properties.WeightsOnly;
   weights.WavelengthArray = block.Wavelengths;
   weights.AnisotropyArray = block.Anisotropies;
   weights.Scale = this->Scale;
@@ -386,7 +391,7 @@ SubbandPointWeights SubbandPlan::GetPointWeights(const SubbandBlock& block)
 SubbandPointsKey SubbandPlan::GetPointsKey(
   const SubbandBlock& block, const SubbandPointWeights& weights) const
 {
-  const Plane plane = this->Bounds.GetPlane();
+  const Plane plane = this->Agreed.Bounds.GetPlane();
   SubbandPointsKey key;
   key.Arrays = { block.Texture, block.Vectors, block.Wavelengths, block.Anisotropies,
     weights.OwnWeights, weights.Factors };

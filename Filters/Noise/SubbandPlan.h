@@ -93,10 +93,9 @@ struct SubbandProperties
   /// Arrays of wavelengths and anisotropies; empty: none.
   std::string WavelengthArray;
   std::string AnisotropyArray;
-  /// Points are no samples: their spacing does not count, and no tiles are made.
-  bool WeightsOnly = false;
   /// Parameterization AUTOMATIC: projections where charts of the texture are too small.
   bool ChooseParameterization = true;
+  bool WeightsOnly = false;
 };
 
 /// Kept from one plan to the next: they take longest to make.
@@ -117,12 +116,15 @@ private:
   steerable::WeightMethod AnisotropyMethod = steerable::WeightMethod::None;
 };
 
-/// What all blocks of all ranks agree on.
+/// What all ranks find together, for those who do not meet them.
 struct SubbandAgreement
 {
   CommonBounds Bounds;
   SurfaceSums Sums;
-  std::array<double, 3> Lengths = {};
+  /// Of arrays: the least wavelength, and the negated greatest and largest anisotropy.
+  std::array<double, 3> Lengths = { std::numeric_limits<double>::infinity(),
+    std::numeric_limits<double>::infinity(), -1.0 };
+  /// Area of small charts, that of all, and number of small ones.
   std::array<double, 3> Charts = {};
   SubbandSeams Seams;
 };
@@ -136,22 +138,20 @@ struct SubbandPlan
 {
   SubbandProperties Properties;
   vtkMultiProcessController* Controller = nullptr;
+  /// Not null: taken in place of agreeing.
+  std::shared_ptr<const SubbandAgreement> Given;
   SubbandTileSets* Tiles = nullptr;
   bool IsSteered = false;
   bool IsOfImage = false; ///< Bands of an image take the place of tiles.
   const steerable::SubbandTiles* ImageTiles = nullptr;
-  /// Taken in place of agreeing with other ranks; null: they agree.
-  std::shared_ptr<const SubbandAgreement> Given;
-  SubbandAgreement Agreed;
   /// Why this rank cannot go on; empty: it can.
   std::string Failure;
 
   /// Bounds, spacing, and what the triangles say of the texture.
   void AgreeOnSurfaces(std::vector<SubbandBlock>& blocks);
-  CommonBounds Bounds;
+  SubbandAgreement Agreed;
   double Diagonal = 0.0;
-  SurfaceSums Sums; ///< Of all ranks.
-  SurfaceSums Own;  ///< Of this one.
+  SurfaceSums Own; ///< Of this rank.
   double Spacing = 0.0; ///< Typical distance of points; 0: there is none.
 
   /// Wavelength and anisotropy, from properties, arrays and spacing.
@@ -196,21 +196,20 @@ struct SubbandPlan
 
 private:
   bool BlendsSeams() const { return this->Properties.BlendSeams && !this->IsOfImage; }
-  /// Reduces a value of this rank to that of all, or takes what is given.
-  template <class Value, class Work>
-  void Agree(Value& value, Value SubbandAgreement::*member, Work&& reduce)
+  SubbandSurface& GetSurface(SubbandBlock& block) const;
+  /// `reduce` makes what this rank found that of all, unless it was given.
+  template <typename Value, typename Reduce>
+  void Agree(Value SubbandAgreement::*what, Reduce&& reduce)
   {
     if (this->Given)
     {
-      value = (*this->Given).*member;
+      this->Agreed.*what = (*this->Given).*what;
     }
     else
     {
-      reduce();
+      reduce(this->Agreed.*what);
     }
-    this->Agreed.*member = value;
   }
-  SubbandSurface& GetSurface(SubbandBlock& block) const;
   void AddBounds(std::vector<SubbandBlock>& blocks);
   void ResolveAnisotropy(double largest);
   vtkDataArray* FindLengths(
@@ -220,7 +219,6 @@ private:
   void AddLookups(bool ofTexture, int firstPlane, std::vector<SubbandLookup>& lookups);
   steerable::TriangleMapping GetAvoided() const;
 
-  SubbandSeams Seams;
   double Anisotropy = 1.0;                             // what SteeredFeature takes
   double LargestSteering = 1.0;                        // the same of the largest of an array
   const steerable::SubbandAnisotropy* Scale = nullptr; // null: as it is

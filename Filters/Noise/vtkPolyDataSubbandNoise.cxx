@@ -152,8 +152,7 @@ struct vtkPolyDataSubbandNoise::Internals
   /// By the texture coordinates, which are only compared, and WrapSeams.
   noise::KeptByInput<noise::KeptSurface, std::pair<const vtkDataArray*, bool>> Kept;
   noise::SubbandTileSets Tiles;
-  /// By another filter; null: the ranks agree themselves.
-  std::shared_ptr<const noise::SubbandAgreement> Given;
+  std::shared_ptr<const noise::SubbandAgreement> Given; // by another filter; null: ranks agree
   std::shared_ptr<const noise::SubbandAgreement> Last;
 
   /// What comes from inputs.
@@ -251,7 +250,8 @@ void vtkPolyDataSubbandNoise::SetPhase(double phase)
 //------------------------------------------------------------------------------
 void vtkPolyDataSubbandNoise::TakeAgreement(vtkPolyDataSubbandNoise* other)
 {
-  const std::shared_ptr<const noise::SubbandAgreement> given = other ? other->Cache->Last : nullptr;
+  const std::shared_ptr<const noise::SubbandAgreement> given =
+    other ? other->Cache->Last : nullptr;
   if (this->Cache->Given != given)
   {
     this->Cache->Given = given;
@@ -317,14 +317,14 @@ vtkPolyDataSubbandNoise::Execution::Execution(vtkPolyDataSubbandNoise* self)
   p.Orientations = self->Orientations;
   p.RadialTriple = self->RadialTriple;
   p.Octaves = self->Octaves;
-  p.WeightsOnly = self->WeightsOnly;
-  p.AntiAlias = self->AntiAlias && !self->WeightsOnly;
+  p.AntiAlias = self->AntiAlias;
   p.WrapSeams = self->WrapSeams;
   p.BlendSeams = self->BlendSeams;
   p.TileSize = self->TileSize;
   p.Seed = static_cast<std::uint32_t>(self->Seed);
   p.Phase = self->Phase;
   p.ChooseParameterization = self->Parameterization == AUTOMATIC;
+  p.WeightsOnly = self->WeightsOnly;
   this->Plan.Controller = self->Controller;
   this->Plan.Given = self->Cache->Given;
   this->Plan.Tiles = &self->Cache->Tiles;
@@ -387,7 +387,8 @@ void vtkPolyDataSubbandNoise::Execution::AgreeAcrossRanks(vtkImageData* image)
     { return std::pair<const vtkDataArray*, bool>(block.Texture, plan.Properties.WrapSeams); });
   plan.AgreeOnSurfaces(this->Blocks);
   const bool nothing =
-    plan.Sums[SurfaceSums::TexturedBlocks] + plan.Sums[SurfaceSums::ProjectedBlocks] == 0.0;
+    plan.Agreed.Sums[SurfaceSums::TexturedBlocks] + plan.Agreed.Sums[SurfaceSums::ProjectedBlocks] ==
+    0.0;
   if (plan.Failure.empty() && this->BlocksWithout > 0 && (!this->IsComposite || nothing))
   {
     plan.Failure = this->Finder.Why;
@@ -426,7 +427,8 @@ void vtkPolyDataSubbandNoise::Execution::EvaluateBlock(
   vtkSmartPointer<vtkFloatArray> result;
   if (!this->Self->WeightsOnly)
   {
-    result = noise::NewOutputArray(this->Self->ResultArrayName, 1, block.Mesh->GetNumberOfPoints());
+    result =
+      noise::NewOutputArray(this->Self->ResultArrayName, 1, block.Mesh->GetNumberOfPoints());
     evaluator.Noise = result->GetPointer(0);
   }
   this->AddOutputArrays(block, evaluator);
@@ -550,7 +552,7 @@ void vtkPolyDataSubbandNoise::Execution::EvaluatePoints(
     {
       const auto tuples = static_cast<std::size_t>(block.Vectors->GetNumberOfTuples());
       reader = noise::MakeVectorReader(
-        block.Vectors, noise::WorldAxes, false, this->Plan.Bounds.GetPlane());
+        block.Vectors, noise::WorldAxes, false, this->Plan.Agreed.Bounds.GetPlane());
       scratch.resize(3 * tuples);
       surface.Vectors.Values = reader->Read(0, tuples, scratch.data());
       surface.Vectors.Cells = block.CellVectors;
@@ -687,7 +689,7 @@ int vtkPolyDataSubbandNoise::RequestData(
   run.CollectBlocks(input, output);
   run.AgreeAcrossRanks(run.Plan.IsOfImage ? vtkImageData::GetData(inputVector[1]) : nullptr);
   this->ResolvedWavelength = run.Plan.Wavelength;
-  this->Cache->Last = std::make_shared<noise::SubbandAgreement>(std::move(run.Plan.Agreed));
+  this->Cache->Last = std::make_shared<noise::SubbandAgreement>(run.Plan.Agreed);
   if (!run.Plan.Failure.empty())
   {
     return refuse(run.Plan.Failure);
@@ -695,8 +697,8 @@ int vtkPolyDataSubbandNoise::RequestData(
   try
   {
     run.Plan.LayTiles();
-    this->PlaneRepeats = run.Plan.GetLayout(false).Repeats;
     this->TextureRepeats = run.Plan.GetLayout(true).Repeats;
+    this->PlaneRepeats = run.Plan.GetLayout(false).Repeats;
     run.Evaluate();
   }
   catch (const std::exception& error)

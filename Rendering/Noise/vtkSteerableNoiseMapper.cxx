@@ -4,8 +4,8 @@
 
 #include "MapperOptions.h"
 #include "NoiseHelper.h"
-#include "NoiseShader.h"
 #include "NoiseLengths.h"
+#include "NoiseShader.h"
 #include "SurfaceFields.h"
 
 #include "vtkActor.h"

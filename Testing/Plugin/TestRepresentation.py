@@ -10,39 +10,18 @@ import numpy
 import plugintest
 from paraview.simple import *
 from paraview.servermanager import vtkSMPropertyHelper
+from plugintest import new_view, picture
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 plugintest.load_plugin()
 from steerablenoise import vtkSteerableNoiseMapper
 
-folder = os.environ["STEERABLENOISE_OUTPUT"]
 root = os.environ["STEERABLENOISE_SOURCE"]
 
 
-def picture(view, name):
-    """Grey values of a screenshot."""
-    path = os.path.join(folder, name + ".png")
-    SaveScreenshot(path, view, ImageResolution=[400, 300])
-    return plugintest.pixels(path).mean(axis=1).reshape(300, 400)
-
-
 def show(source, view):
-    UpdatePipeline(proxy=source)
-    display = Show(source, view)
-    display.SetRepresentationType("Surface")
-    display.ColorArrayName = ["POINTS", ""]
-    ResetCamera(view)
-    plain = picture(view, "plain")
-    display.SetRepresentationType("Steerable Noise")
-    return display, plain
-
-
-def new_view():
-    view = CreateView("RenderView")
-    view.ViewSize = [400, 300]
-    view.OrientationAxesVisibility = 0
-    return view
+    return plugintest.show_as("Steerable Noise", source, view)
 
 
 # Every kind of dataset; vectors are found without a word, on points and on cells.

@@ -9,38 +9,21 @@ import numpy
 import plugintest
 from paraview.simple import *
 from paraview.servermanager import vtkSMPropertyHelper
+from plugintest import new_view
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 plugintest.load_plugin()
 from steerablenoise import vtkSubbandNoiseMapper
 
-folder = os.environ["STEERABLENOISE_OUTPUT"]
 
 
 def picture(view, name):
-    """Grey values of a screenshot."""
-    path = os.path.join(folder, "subband-" + name + ".png")
-    SaveScreenshot(path, view, ImageResolution=[400, 300])
-    return plugintest.pixels(path).mean(axis=1).reshape(300, 400)
+    return plugintest.picture(view, "subband-" + name)
 
 
 def show(source, view):
-    UpdatePipeline(proxy=source)
-    display = Show(source, view)
-    display.SetRepresentationType("Surface")
-    display.ColorArrayName = ["POINTS", ""]
-    ResetCamera(view)
-    plain = picture(view, "plain")
-    display.SetRepresentationType("Subband Noise")
-    return display, plain
-
-
-def new_view():
-    view = CreateView("RenderView")
-    view.ViewSize = [400, 300]
-    view.OrientationAxesVisibility = 0
-    return view
+    return plugintest.show_as("Subband Noise", source, view)
 
 
 wavelet = Wavelet(WholeExtent=[0, 20, 0, 20, 0, 20])

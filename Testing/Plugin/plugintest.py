@@ -80,6 +80,32 @@ def pixels(path):
     return vtk_to_numpy(reader.GetOutput().GetPointData().GetScalars())[:, :3].astype(float)
 
 
+def new_view():
+    view = simple.CreateView("RenderView")
+    view.ViewSize = [400, 300]
+    view.OrientationAxesVisibility = 0
+    return view
+
+
+def picture(view, name):
+    """Grey values of a screenshot, 0 to 255, 300 x 400, from below."""
+    path = os.path.join(OUTPUT, name + ".png")
+    simple.SaveScreenshot(path, view, ImageResolution=[400, 300])
+    return pixels(path).mean(axis=1).reshape(300, 400)
+
+
+def show_as(representation, source, view):
+    """The source's display with this representation, and its picture as a surface of one colour before."""
+    simple.UpdatePipeline(proxy=source)
+    display = simple.Show(source, view)
+    display.SetRepresentationType("Surface")
+    display.ColorArrayName = ["POINTS", ""]
+    simple.ResetCamera(view)
+    plain = picture(view, "plain")
+    display.SetRepresentationType(representation)
+    return display, plain
+
+
 def slabs(places):
     """The rank that owns each of n places, n x 3: slabs along x with the same number each, one for each rank."""
     ranks = vtkMultiProcessController.GetGlobalController().GetNumberOfProcesses()

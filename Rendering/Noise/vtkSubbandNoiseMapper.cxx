@@ -200,7 +200,9 @@ void vtkSubbandNoiseMapper::Internals::Update(vtkDataObject* input)
     auto iterator = vtkSmartPointer<vtkCompositeDataIterator>::Take(composite->NewIterator());
     for (iterator->InitTraversal(); outputs && !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
     {
-      if (auto* data = vtkPolyData::SafeDownCast(iterator->GetCurrentDataObject()))
+      // An input that the filter refused has no block in its output to look for.
+      auto* data = vtkPolyData::SafeDownCast(iterator->GetCurrentDataObject());
+      if (data && this->Errors.empty())
       {
         this->TakeBlock(data, vtkPolyData::SafeDownCast(outputs->GetDataSet(iterator)));
       }

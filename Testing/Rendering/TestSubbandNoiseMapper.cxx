@@ -410,6 +410,18 @@ TEST(SubbandNoiseMapper, BadInputIsToldOnceAndShowsItsOwnColours)
   EXPECT_EQ(scene.Render(), own);
   EXPECT_EQ(messages.Get(), text);
 
+  // The same of blocks, which the filter then has none of.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, sheet);
+  scene.Mapper->SetParameterization(vtkPolyDataSubbandNoise::TEXTURE_COORDINATES);
+  scene.Mapper->SetInputDataObject(blocks);
+  scene.Render();
+  const std::string more = messages.Get().substr(text.size());
+  EXPECT_NE(more.find("There are no texture coordinates"), std::string::npos) << more;
+  EXPECT_EQ(more.find("Structure"), std::string::npos) << more;
+  scene.Mapper->SetParameterization(vtkPolyDataSubbandNoise::AUTOMATIC);
+  scene.Mapper->SetInputDataObject(sheet);
+
   // Points that are not finite, and cells without area.
   sheet->GetPoints()->SetPoint(7, std::nan(""), 0.0, 0.0);
   sheet->GetPoints()->SetPoint(8, 3.0, 1.0, 0.0);

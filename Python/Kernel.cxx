@@ -100,8 +100,8 @@ Counts EvaluateImage(const steerable::NoiseParameters& parameters, int dimension
   const std::size_t row = vectors[0].shape(2);
   const nb::gil_scoped_release noGil;
   Blanks blanks{ tuples, parameters.MaskThreshold, limit, blank };
-  constexpr std::size_t together = steerable::ImageGrid::RowsTogether;
-  ForEachPart(grid.GetNumberOfRows(), (ImageSamplesAtATime / row / together + 1) * together, threads,
+  ForEachPart(grid.GetNumberOfRows(),
+    steerable::ImageGrid::RowsBeyond(ImageSamplesAtATime / row), threads,
     [&](std::size_t begin, std::size_t end) {
       blanks.Apply(
         kernel.EvaluateImage(grid, field, begin, end, noise), begin * row, end * row, noise);

@@ -89,6 +89,11 @@ struct ImageGrid
   static constexpr int MaximumStride = 16;
   /// Rows that go through the stages together: parts of an image cost least in multiples of these.
   static constexpr std::size_t RowsTogether = 8;
+  /// The least multiple of these that is more than so many rows.
+  static constexpr std::size_t RowsBeyond(std::size_t rows)
+  {
+    return (rows / RowsTogether + 1) * RowsTogether;
+  }
 
   std::size_t GetNumberOfRows() const
   {

@@ -23,6 +23,9 @@ namespace noise
 /// For PointSums of unit vectors: a millionth, and room for two thousand that are alike.
 constexpr double DirectionSteps = 1 << 20;
 
+/// Added to a number below 2^51, leaves no room for parts of 1: rounds to the nearest in one instruction.
+constexpr double LeavesWholes = 6755399441055744.0;
+
 /**
  * Means over the cells of each point, as far as they go into 2^31 steps together. Sums are exact, so that
  * they do not depend on the order of the cells, which differs between the pieces of a dataset.
@@ -57,17 +60,15 @@ public:
     const Eigen::Array3d steps = value.array() * this->StepsPerUnit;
     if (std::isfinite(steps.sum()))
     {
-      // Rounds to the nearest in one instruction, as the conversion of something larger than 2^52 does.
-      constexpr double rounding = 6755399441055744.0;
-      const Eigen::Array3d whole = (steps.max(-most).min(most) + rounding) - rounding;
+      const Eigen::Array3d whole = (steps.max(-most).min(most) + LeavesWholes) - LeavesWholes;
       shares.push_back({ point, whole.matrix().cast<int>() });
     }
   }
 
   /**
    * `makeGetShares()` makes, for one of the threads and with room of its own, the function
-   * getShares(cell, shares) that appends those of a cell. `lines`: v and -v are the same, so a sum takes them to its own side, which their order decides
-   * where they are across one another.
+   * getShares(cell, shares) that appends those of a cell. `lines`: v and -v are the same, so a sum takes
+   * them to its own side, which their order decides where they are across one another.
    */
   template <class MakeGetShares>
   void AddCells(bool lines, MakeGetShares&& makeGetShares)

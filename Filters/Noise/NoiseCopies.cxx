@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "NoiseCopies.h"
 
+#include "CellSums.h"
 #include "PointPlaces.h"
 
 #include "vtkDataSet.h"
@@ -76,8 +77,7 @@ CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hid
         std::uint64_t hash = 0x9E3779B97F4A7C15u;
         for (const double value : place)
         {
-          // Units, in the lowest bits of a number that has no room for parts of them.
-          const double units = value / unit + 6755399441055744.0;
+          const double units = value / unit + LeavesWholes; // in its lowest bits
           std::uint64_t bits;
           std::memcpy(&bits, &units, sizeof(bits));
           hash = (hash ^ bits) * 0xBF58476D1CE4E5B9u;

@@ -96,13 +96,10 @@ auto ForEachPart(vtkAlgorithm* algorithm, std::size_t parts, vtkIdType samples,
   constexpr std::size_t samplesPerChunk = 1u << 15;
   const auto perPart = std::max<std::size_t>(1, static_cast<std::size_t>(samples) / parts);
   // Whole patches of rows, if the parts are rows.
-  const auto whole = [](std::size_t count)
-  {
-    constexpr std::size_t together = steerable::ImageGrid::RowsTogether;
-    return (count / together + 1) * together;
-  };
-  const std::size_t slice = whole(std::max(parts / 20, samplesPerSlice / perPart));
-  const std::size_t grain = whole(samplesPerChunk / perPart);
+  using steerable::ImageGrid;
+  const std::size_t slice =
+    ImageGrid::RowsBeyond(std::max(parts / 20, samplesPerSlice / perPart));
+  const std::size_t grain = ImageGrid::RowsBeyond(samplesPerChunk / perPart);
   std::mutex mutex;
   WithThreads(
     [&]

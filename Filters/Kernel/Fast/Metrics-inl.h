@@ -265,16 +265,13 @@ HWY_NOINLINE void MetricsOfDirections(
       block.Across + i);
     hn::StoreU(hn::IfThenElse(onSurface, AtStrength(SurfaceNormalEigenvalue, strength), across),
       DF(), block.Second + i);
-    // Without a surface, or a direction in it, any axis across u will do: u x x or u x y.
+    // Without a surface, or a direction in it, any axis across u will do.
     const auto keeps = hn::And(there, onSurface);
-    const auto byX = hn::Lt(hn::Abs(u[0]), Const(0.7f));
-    const V other[3] = { hn::IfThenElse(byX, zero, hn::Neg(u[2])), hn::IfThenElseZero(byX, u[2]),
-      hn::IfThenElse(byX, hn::Neg(u[1]), u[0]) };
-    const V length = hn::Sqrt(Dot(other, other));
+    V other[3];
+    AnyAcross(u, other);
     for (int axis = 0; axis < 3; ++axis)
     {
-      hn::StoreU(
-        hn::IfThenElse(keeps, m[axis], hn::Div(other[axis], length)), DF(), block.M[axis] + i);
+      hn::StoreU(hn::IfThenElse(keeps, m[axis], other[axis]), DF(), block.M[axis] + i);
     }
   }
 }

@@ -69,6 +69,31 @@ HWY_INLINE V Dot(const V (&a)[N], const V (&b)[N])
   return sum;
 }
 
+HWY_INLINE void Cross(const V (&a)[3], const V (&b)[3], V (&cross)[3])
+{
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    const int j = (axis + 1) % 3;
+    const int k = (axis + 2) % 3;
+    cross[axis] = hn::MulSub(a[j], b[k], hn::Mul(a[k], b[j]));
+  }
+}
+
+/// A unit vector across u, which has length 1: along u x x or u x y.
+HWY_INLINE void AnyAcross(const V (&u)[3], V (&across)[3])
+{
+  const V zero = hn::Zero(DF());
+  const auto byX = hn::Lt(hn::Abs(u[0]), hn::Set(DF(), 0.7f));
+  across[0] = hn::IfThenElse(byX, zero, hn::Neg(u[2]));
+  across[1] = hn::IfThenElseZero(byX, u[2]);
+  across[2] = hn::IfThenElse(byX, hn::Neg(u[1]), u[0]);
+  const V length = hn::Sqrt(Dot(across, across));
+  for (V& component : across)
+  {
+    component = hn::Div(component, length);
+  }
+}
+
 /// The nearest multiple of 2^(-23) `size`, a power of two: sums of products of few digits are
 /// exact.
 HWY_INLINE V RoundTo(V v, float size)
@@ -78,9 +103,10 @@ HWY_INLINE V RoundTo(V v, float size)
 }
 
 /// Bounds of loops over corners, whatever the number is.
+constexpr float FarthestCorner = 1000.0f;
 HWY_INLINE int ToCorner(float place)
 {
-  return static_cast<int>(std::min(1000.0f, std::max(-1000.0f, place)));
+  return static_cast<int>(std::min(FarthestCorner, std::max(-FarthestCorner, place)));
 }
 
 HWY_INLINE float LeastLane(V v)

@@ -43,6 +43,19 @@ STAGE_INLINE void ToDistances(const Walk& walk, V (&place)[N])
   ToPlace(walk, index, place);
 }
 
+/// Adds to the bits of corners what their indices on one axis give, counted from `origin`.
+template <int N, class Walk>
+STAGE_INLINE VU HashAxis(
+  const Walk& walk, const VU (&origin)[N], int axis, VI corner, VU hash)
+{
+  VU index = hn::Add(origin[axis], hn::BitCast(DU(), corner));
+  if (walk.Octave.Period[axis] > 0)
+  {
+    index = WrapIndex(index, walk.Octave.Period[axis]);
+  }
+  return hn::Xor(hash, HashOneAxis(index, axis));
+}
+
 /// Bits of the corners at these indices from `origin`.
 template <int N, class Walk>
 STAGE_INLINE VU HashCorners(const Walk& walk, const VU (&origin)[N], const VI (&corner)[N])
@@ -50,12 +63,7 @@ STAGE_INLINE VU HashCorners(const Walk& walk, const VU (&origin)[N], const VI (&
   VU hash = hn::Set(DU(), walk.Octave.Seed);
   for (int axis = 0; axis < N; ++axis)
   {
-    VU index = hn::Add(origin[axis], hn::BitCast(DU(), corner[axis]));
-    if (walk.Octave.Period[axis] > 0)
-    {
-      index = WrapIndex(index, walk.Octave.Period[axis]);
-    }
-    hash = hn::Xor(hash, HashOneAxis(index, axis));
+    hash = HashAxis(walk, origin, axis, corner[axis], hash);
   }
   return HashJoinAxes(hash);
 }

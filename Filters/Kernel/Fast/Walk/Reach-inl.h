@@ -34,28 +34,6 @@ STAGE_INLINE V GetTaper(V distance, V inverseLength, V halfWidth, bool tapers)
   return hn::IfThenElse(hn::Lt(left, hn::Zero(DF())), Const(-1e9f), hn::Mul(halfWidth, taper));
 }
 
-/// Axes across the flow: in 2D the normal (-u_y, u_x), in 3D those of space.
-template <int N>
-constexpr int AxesAcross = N == 2 ? 1 : N;
-
-/// A vector across u on these axes.
-template <int N>
-STAGE_INLINE void ToAcross(const V (&v)[N], const V (&u)[N], V (&across)[AxesAcross<N>])
-{
-  if constexpr (N == 2)
-  {
-    across[0] = hn::MulSub(u[0], v[1], hn::Mul(u[1], v[0]));
-  }
-  else
-  {
-    const V along = Dot(v, u);
-    for (int axis = 0; axis < N; ++axis)
-    {
-      across[axis] = hn::NegMulAdd(along, u[axis], v[axis]);
-    }
-  }
-}
-
 /// Where lattice rows are cut: the reach of registers together in all lanes, or that of a sample in
 /// each.
 template <int N>
@@ -63,9 +41,11 @@ struct Reach
 {
   V Place[N];
   V U[N];
+  Frame<N> Across;
   V Bend[N];
-  V BendLength;
-  V LargestBend; // of any sample
+  V BendAcross[AxesAcross<N>];
+  V BendLength; // of BendAcross
+  V LargestBend; // of any sample, in cells
   V Length;      // what can be ahead or behind included
   V HalfWidth;
   V LargestWidth;
@@ -74,25 +54,19 @@ struct Reach
   /// them.
   V Spread;
   V RowSpread;
-  /// What s can be off that of the middle; and t, by Across[0] + Across[1] |s| + Across[2] s².
+  /// What s can be off that of the middle; and t, by Off[0] + Off[1] |s| + Off[2] s².
   V AlongReach;
-  V Across[3];
+  V Off[3];
   bool Tapers;
-  /// Of bent surflets: as many as leave the parabola little to be off a line, see CutRows.
-  int Sections = 1;
 
   STAGE_INLINE Reach() {}
-  STAGE_INLINE void SetSections(float sag)
-  {
-    this->Sections = sag < 0.8f ? 1 : sag < 3.2f ? 2 : 4;
-  }
 
   /**
    * All that a group reaches. Of its first step the part on a lattice row, as long as `row`, is
    * either a step like others, or the row is continued by it.
    */
   STAGE_INLINE Reach(const Group<N>& group, const Extent& extent, V row)
-    : BendLength(group.BendLength)
+    : Across(group.Across)
     , LargestBend(hn::Add(group.HalfKappa, group.HalfKappa))
     , HalfWidth(Const(extent.HalfWidth))
     , InverseLength(Const(1.0f / extent.HalfLength))
@@ -102,6 +76,7 @@ struct Reach
     std::copy(group.Place, group.Place + N, this->Place);
     std::copy(group.U, group.U + N, this->U);
     std::copy(group.Bend, group.Bend + N, this->Bend);
+    this->SetBendAcross();
     this->SetAcross(group, extent, row);
     const V continued = this->LargestWidth;
     this->SetAcross(group, extent, hn::Zero(DF()));
@@ -109,8 +84,12 @@ struct Reach
     {
       this->SetAcross(group, extent, row);
     }
-    this->SetSections(
-      hn::GetLane(hn::Mul(hn::Mul(this->Length, this->Length), this->BendLength)));
+  }
+
+  STAGE_INLINE void SetBendAcross()
+  {
+    this->Across.Take(this->Bend, this->BendAcross);
+    this->BendLength = hn::Sqrt(Dot(this->BendAcross, this->BendAcross));
   }
 
 private:
@@ -128,23 +107,26 @@ private:
       std::copy(group.PlaceStep[k], group.PlaceStep[k] + N, place);
       place[0] = k == 0 ? hn::Sub(place[0], hn::CopySign(row, place[0])) : place[0];
       const V alongStep = Dot(place, this->U);
-      V turn[N];
-      for (int axis = 0; axis < N; ++axis)
+      V placeAcross[AxesAcross<N>];
+      V turn[AxesAcross<N>];
+      this->Across.Take(place, placeAcross);
+      this->Across.Take(group.UStep[k], turn);
+      for (int axis = 0; axis < AxesAcross<N>; ++axis)
       {
-        place[axis] = hn::NegMulAdd(alongStep, this->U[axis], place[axis]);
-        turn[axis] = hn::NegMulAdd(alongStep, this->Bend[axis], group.UStep[k][axis]);
+        turn[axis] = hn::NegMulAdd(alongStep, this->BendAcross[axis], turn[axis]);
       }
       along = hn::Add(along, hn::Abs(alongStep));
-      steps0 = hn::Add(steps0, hn::Sqrt(Dot(place, place)));
+      steps0 = hn::Add(steps0, hn::Sqrt(Dot(placeAcross, placeAcross)));
       steps1 = hn::Add(steps1, hn::Sqrt(Dot(turn, turn)));
     }
-    this->Across[0] = hn::Add(steps0, group.GetRest(hn::Zero(DF()), along));
-    this->Across[1] = hn::Add(hn::MulAdd(group.BendLength, group.MostTurn, steps1),
-      hn::MulAdd(along, group.ChangeRest, group.Linear));
-    this->Across[2] = hn::MulAdd(half, group.Change, group.HalfBendRest);
+    const V stretch = group.Across.Stretch;
+    this->Off[0] = hn::Add(steps0, group.GetRest(hn::Zero(DF()), along));
+    this->Off[1] = hn::Add(hn::MulAdd(this->BendLength, group.MostTurn, steps1),
+      hn::Mul(stretch, hn::MulAdd(along, group.ChangeRest, group.Linear)));
+    this->Off[2] = hn::Mul(stretch, hn::MulAdd(half, group.Change, group.HalfBendRest));
     this->AlongReach = hn::Add(hn::Add(along, group.AlongRest), Const(extent.Travel));
     this->Length = hn::Add(Const(extent.HalfLength), this->AlongReach);
-    this->LargestWidth = hn::Add(this->HalfWidth, Quadratic(this->Across, this->Length));
+    this->LargestWidth = hn::Add(this->HalfWidth, Quadratic(this->Off, this->Length));
   }
 };
 
@@ -160,7 +142,9 @@ STAGE_INLINE Reach<N> GetReachApart(const Walk& walk, std::size_t first)
     reach.Bend[axis] =
       walk.Setup.Curved ? Load(walk.Block.ClampedBend[axis] + first) : hn::Zero(DF());
   }
-  reach.BendLength = reach.LargestBend = hn::Sqrt(Dot(reach.Bend, reach.Bend));
+  reach.LargestBend = hn::Sqrt(Dot(reach.Bend, reach.Bend));
+  reach.Across = GetFrameApart<N>(walk, first, reach.U);
+  reach.SetBendAcross();
   const V one = Const(1.0f);
   const V rootInverse = hn::Div(one, hn::Sqrt(Load(walk.Along + first)));
   const V length = hn::MulAdd(Const(walk.GetLengthSupport()), rootInverse, Const(Slack));
@@ -171,17 +155,15 @@ STAGE_INLINE Reach<N> GetReachApart(const Walk& walk, std::size_t first)
   reach.AlongReach = hn::Mul(rootInverse, Const(walk.GetTravel()));
   reach.Length = hn::Add(length, reach.AlongReach);
   reach.Spread = reach.RowSpread = hn::Zero(DF());
-  reach.Across[0] = reach.Across[1] = reach.Across[2] = hn::Zero(DF());
+  reach.Off[0] = reach.Off[1] = reach.Off[2] = hn::Zero(DF());
   reach.Tapers = !walk.IsStreaks();
-  reach.SetSections(
-    GreatestLane(hn::Mul(hn::Mul(reach.Length, reach.Length), reach.BendLength)));
   return reach;
 }
 
 /// Bounds of loops over corners, whatever the numbers are.
 STAGE_INLINE VI ToCorners(V place)
 {
-  return hn::ConvertTo(DI(), hn::Max(hn::Min(place, Const(1000.0f)), Const(-1000.0f)));
+  return hn::ConvertTo(DI(), hn::Max(hn::Min(place, Const(FarthestCorner)), Const(-FarthestCorner)));
 }
 
 /// How an index of the lattice changes with the place.
@@ -195,37 +177,33 @@ struct IndexAxis
   V BoxHigh;
 };
 
-/// How much farther across a corner can stand before jitter moves it, the change of its sag
-/// included.
+/// How much farther across, in the frame, a corner can stand before jitter moves it, the change of
+/// its sag included.
 template <int N, class Walk>
 STAGE_INLINE V GetLooseness(const Walk& walk, const Reach<N>& reach)
 {
   const V radius = Const(walk.Setup.JitterRadius);
-  return hn::MulAdd(hn::Mul(radius, reach.LargestBend), hn::Add(reach.Length, radius), radius);
+  return hn::Mul(reach.Across.Stretch,
+    hn::MulAdd(hn::Mul(radius, reach.LargestBend), hn::Add(reach.Length, radius), radius));
 }
 
 template <int N, class Walk>
 STAGE_INLINE IndexAxis GetIndexAxis(const Walk& walk, const Reach<N>& reach, int axis)
 {
   IndexAxis result;
-  result.Rate = reach.U[axis];
-  result.Bend = reach.Bend[axis];
-  float w2 = 1.0f;
-  if (walk.IsOblique())
+  V gradient[N];
+  float w2 = 0.0f;
+  for (int i = 0; i < N; ++i)
   {
-    result.Rate = result.Bend = hn::Zero(DF());
-    w2 = 0.0f;
-    for (int i = 0; i < N; ++i)
-    {
-      const auto w = static_cast<float>(walk.Setup.LatticeIndices[axis][i]);
-      result.Rate = hn::MulAdd(Const(w), reach.U[i], result.Rate);
-      result.Bend = hn::MulAdd(Const(w), reach.Bend[i], result.Bend);
-      w2 += w * w;
-    }
+    const float w = walk.IsOblique() ? static_cast<float>(walk.Setup.LatticeIndices[axis][i])
+                                     : static_cast<float>(i == axis);
+    gradient[i] = Const(w);
+    w2 += w * w;
   }
-  const V across =
-    hn::Sqrt(hn::Max(hn::NegMulAdd(result.Rate, result.Rate, Const(w2)), hn::Zero(DF())));
-  result.Width = hn::Mul(hn::Add(reach.LargestWidth, GetLooseness(walk, reach)), across);
+  result.Rate = Dot(gradient, reach.U);
+  result.Bend = Dot(gradient, reach.Bend);
+  result.Width = hn::Mul(
+    hn::Add(reach.LargestWidth, GetLooseness(walk, reach)), reach.Across.GetChange(gradient));
   result.InverseRate = Inverse(result.Rate);
   // Window and jitter are boxes of places; oblique indices need √3 times as many to cover them.
   const float more = walk.IsOblique() ? 1.75f : 1.0f;
@@ -295,7 +273,8 @@ STAGE_INLINE void GetRange(const Walk& walk, const Reach<N>& reach, int number,
 }
 
 /**
- * Interval of a register of rows. The surflet is cut into sections along the flow. In each the
+ * Interval of a register of rows, of what they have of the flow from `begin` to `end` (see Narrow).
+ * That is cut into sections. In each the
  * parabola is close to a line, so that what the ellipsoid around it leaves of the row is a
  * quadratic's. With W the half-width, L the half-length, and e and a what t and s can be off, |t|
  * <= W √(1 - (|s| - a)²/L²) + e implies, by (x + y)² <= (1 + d) x² + (1 + 1/d) y² with d = e/W and
@@ -305,7 +284,7 @@ STAGE_INLINE void GetRange(const Walk& walk, const Reach<N>& reach, int number,
  */
 template <int N, class Walk>
 STAGE_INLINE void CutRows(
-  const Walk& walk, const Reach<N>& reach, V rowY, V rowZ, V& low, V& high)
+  const Walk& walk, const Reach<N>& reach, V rowY, V rowZ, V begin, V end, V& low, V& high)
 {
   V row[N];
   V index[N];
@@ -327,13 +306,10 @@ STAGE_INLINE void CutRows(
   const V se = Dot(step, reach.U);
   V t0[AxesAcross<N>];
   V te[AxesAcross<N>];
-  V bend[AxesAcross<N>];
-  ToAcross<N>(row, reach.U, t0);
-  ToAcross<N>(step, reach.U, te);
-  ToAcross<N>(reach.Bend, reach.U, bend);
+  reach.Across.Take(row, t0);
+  reach.Across.Take(step, te);
   const V inverse = Inverse(se);
   const V radius = Const(walk.Setup.JitterRadius);
-  const V length = hn::Add(reach.Length, radius);
   const V offAlong = hn::Add(reach.AlongReach, radius);
   const V looseness = GetLooseness(walk, reach);
   const V overLength = hn::Mul(offAlong, reach.InverseLength);
@@ -341,20 +317,28 @@ STAGE_INLINE void CutRows(
   const V tapers = reach.Tapers
     ? hn::Mul(reach.InverseLength, hn::Div(reach.InverseLength, hn::Add(Const(1.0f), overLength)))
     : hn::Zero(DF());
-  const int sections = walk.Setup.Curved ? reach.Sections : 1;
-  const V section = hn::Mul(length, Const(2.0f / static_cast<float>(sections)));
+  const auto any = hn::Le(begin, end);
+  V section = hn::Sub(end, begin);
+  int sections = 1;
+  if (walk.Setup.Curved)
+  {
+    // As many as leave the parabola little to be off a line.
+    const V sag = hn::Mul(hn::Mul(section, section), reach.BendLength);
+    const float most = GreatestLane(hn::IfThenElseZero(any, sag));
+    sections = most < 3.2f ? 1 : most < 12.8f ? 2 : 4;
+    section = hn::Mul(section, Const(1.0f / static_cast<float>(sections)));
+  }
   const V offParabola = hn::Mul(hn::Mul(section, section), Const(1.0f / 16.0f));
 
   V least = Const(1e9f);
   V most = Const(-1e9f);
-  V begin = hn::Neg(length);
   V beginX = hn::Mul(hn::Sub(begin, s0), inverse);
   for (int i = 0; i < sections; ++i)
   {
-    const V end = hn::Add(begin, section);
+    end = hn::Add(begin, section);
     const V endX = hn::Mul(hn::Sub(end, s0), inverse);
     const V farthest = hn::Add(hn::Max(hn::Abs(begin), hn::Abs(end)), radius);
-    V off = hn::Add(Quadratic(reach.Across, farthest), looseness);
+    V off = hn::Add(Quadratic(reach.Off, farthest), looseness);
     off = hn::Add(off, Const(Slack));
     V t[AxesAcross<N>];
     V change[AxesAcross<N>];
@@ -370,8 +354,8 @@ STAGE_INLINE void CutRows(
       const V sagChange = hn::Mul(middle, se);
       for (int axis = 0; axis < AxesAcross<N>; ++axis)
       {
-        t[axis] = hn::NegMulAdd(sag, bend[axis], t[axis]);
-        change[axis] = hn::NegMulAdd(sagChange, bend[axis], change[axis]);
+        t[axis] = hn::NegMulAdd(sag, reach.BendAcross[axis], t[axis]);
+        change[axis] = hn::NegMulAdd(sagChange, reach.BendAcross[axis], change[axis]);
       }
     }
     const V width = hn::Add(reach.HalfWidth, off);
@@ -394,8 +378,8 @@ STAGE_INLINE void CutRows(
     const V root = hn::Sqrt(hn::Max(discriminant, hn::Zero(DF())));
     const V first = hn::Max(hn::Min(beginX, endX), hn::Mul(hn::Neg(hn::Add(B, root)), inverseA));
     const V last = hn::Min(hn::Max(beginX, endX), hn::Mul(hn::Sub(root, B), inverseA));
-    const auto some = hn::And(
-      hn::Le(first, hn::Add(last, Const(2e-3f))), hn::Ge(discriminant, hn::Zero(DF())));
+    const auto some = hn::And(any, hn::And(
+      hn::Le(first, hn::Add(last, Const(2e-3f))), hn::Ge(discriminant, hn::Zero(DF()))));
     least = hn::IfThenElse(some, hn::Min(least, first), least);
     most = hn::IfThenElse(some, hn::Max(most, last), most);
     begin = end;

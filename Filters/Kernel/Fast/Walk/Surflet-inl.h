@@ -73,21 +73,19 @@ struct Sample
         : hn::Zero(DF());
     }
     this->AlongFraction = Dot(this->U, this->Fraction);
-    if (N == 3 && setup.Biaxial)
+    if constexpr (N == 3)
     {
-      this->Second = Load((setup.Curved ? block.BentSecond : block.Second) + i);
-      for (int axis = 0; axis < N; ++axis)
+      if (setup.Biaxial)
       {
-        this->M[axis] = Load(block.M[axis] + i);
+        this->Second = Load((setup.Curved ? block.BentSecond : block.Second) + i);
+        for (int axis = 0; axis < N; ++axis)
+        {
+          this->M[axis] = Load(block.M[axis] + i);
+        }
+        Cross(this->U, this->M, this->ThirdAxis);
+        this->Rest[0] = Load(block.URest[0] + i);
+        this->Rest[1] = Load(block.URest[1] + i);
       }
-      for (int axis = 0; axis < N; ++axis)
-      {
-        const int j = (axis + 1) % N;
-        const int k = (axis + 2) % N;
-        this->ThirdAxis[axis] = hn::MulSub(this->U[j], this->M[k], hn::Mul(this->U[k], this->M[j]));
-      }
-      this->Rest[0] = Load(block.URest[0] + i);
-      this->Rest[1] = Load(block.URest[1] + i);
     }
     if constexpr (N == 2)
     {

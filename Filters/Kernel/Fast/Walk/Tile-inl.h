@@ -95,6 +95,102 @@ struct Ruler
   }
 };
 
+/// Axes across the flow.
+template <int N>
+constexpr int AxesAcross = N - 1;
+
+/**
+ * Axes across the flow on which a surflet is round: its wider one has length 1, along the narrower
+ * one distances count more. Round ones take any. In lanes alike or of their own.
+ */
+template <int N>
+struct Frame
+{
+  V Axis[AxesAcross<N>][N];
+  /// Of each axis: 1 / its length². Only metrics with a second axis have other than 1.
+  V Unstretched[AxesAcross<N>];
+  /// The longest axis.
+  V Stretch;
+
+  /// What a vector has across the flow.
+  STAGE_INLINE void Take(const V (&v)[N], V (&across)[AxesAcross<N>]) const
+  {
+    for (int i = 0; i < AxesAcross<N>; ++i)
+    {
+      across[i] = Dot(v, this->Axis[i]);
+    }
+  }
+
+  /// How much something with this gradient changes at most by one across the flow.
+  STAGE_INLINE V GetChange(const V (&gradient)[N]) const
+  {
+    V change2 = hn::Zero(DF());
+    for (int i = 0; i < AxesAcross<N>; ++i)
+    {
+      const V change = hn::Mul(Dot(gradient, this->Axis[i]), this->Unstretched[i]);
+      change2 = hn::MulAdd(change, change, change2);
+    }
+    return hn::Sqrt(change2);
+  }
+};
+
+/// Round, around these directions.
+template <int N>
+STAGE_INLINE Frame<N> GetRoundFrame(const V (&u)[N])
+{
+  Frame<N> frame;
+  frame.Stretch = Const(1.0f);
+  std::fill_n(frame.Unstretched, AxesAcross<N>, Const(1.0f));
+  if constexpr (N == 2)
+  {
+    frame.Axis[0][0] = hn::Neg(u[1]);
+    frame.Axis[0][1] = u[0];
+  }
+  else
+  {
+    AnyAcross(u, frame.Axis[0]);
+    Cross(u, frame.Axis[0], frame.Axis[1]);
+  }
+  return frame;
+}
+
+/// With a second axis across these directions, of these eigenvalues.
+STAGE_INLINE Frame<3> GetFrame(const V (&u)[3], const V (&m)[3], V second, V across)
+{
+  Frame<3> frame;
+  Cross(u, m, frame.Axis[1]);
+  const V inverse = hn::Div(Const(1.0f), hn::Min(second, across));
+  const V squares[2] = { hn::Mul(second, inverse), hn::Mul(across, inverse) };
+  const V lengths[2] = { hn::Sqrt(squares[0]), hn::Sqrt(squares[1]) };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    frame.Axis[0][axis] = hn::Mul(m[axis], lengths[0]);
+    frame.Axis[1][axis] = hn::Mul(frame.Axis[1][axis], lengths[1]);
+  }
+  for (int i = 0; i < 2; ++i)
+  {
+    frame.Unstretched[i] = hn::Div(Const(1.0f), squares[i]);
+  }
+  frame.Stretch = hn::Max(lengths[0], lengths[1]);
+  return frame;
+}
+
+/// That of the samples from `first` on, with these directions.
+template <int N, class Walk>
+STAGE_INLINE Frame<N> GetFrameApart(const Walk& walk, std::size_t first, const V (&u)[N])
+{
+  if constexpr (N == 3)
+  {
+    if (walk.Setup.Biaxial)
+    {
+      const auto& axes = walk.Block.M;
+      const V m[3] = { Load(axes[0] + first), Load(axes[1] + first), Load(axes[2] + first) };
+      return GetFrame(u, m, Load(walk.Second + first), Load(walk.Across + first));
+    }
+  }
+  return GetRoundFrame(u);
+}
+
 /**
  * A group of samples, the same in all lanes. They change almost linearly with two numbers λ in [-1,
  * 1], one within a register, the other from one to the next: a sample is at Place + Σ λ PlaceStep,
@@ -118,6 +214,9 @@ struct Group
   V PlaceRest;
   V DirectionRest;
   V BendRest;
+  Frame<N> Across;
+  /// What surflets are wider for frames that differ from this one, see SetFrame.
+  V FrameRest;
 
   V BendLength;
   V AlongStep[2];
@@ -174,19 +273,23 @@ struct Group
     this->HalfBendRest = hn::Mul(half, this->BendRest);
   }
 
-  /// What t can be off; `steps`: Σ |sStep|, or more.
+  /// What t can be off in the frame; `steps`: Σ |sStep|, or more.
   STAGE_INLINE V GetRest(V distance, V steps) const
   {
     const V both = hn::Add(steps, this->AlongRest);
     const V constant =
       hn::MulAdd(both, hn::MulAdd(this->HalfKappa, both, this->TurnRest), this->PlaceRest);
     const V linear = hn::MulAdd(steps, this->ChangeRest, this->Linear);
-    return hn::MulAdd(hn::MulAdd(this->HalfBendRest, distance, linear), distance, constant);
+    const V rest = hn::MulAdd(hn::MulAdd(this->HalfBendRest, distance, linear), distance, constant);
+    return hn::MulAdd(this->Across.Stretch, rest, this->FrameRest);
   }
 
 private:
   static STAGE_INLINE V Length(const V (&v)[N]) { return hn::Sqrt(Dot(v, v)); }
 };
+
+/// By how much of their width surflets with other axes may widen that of a group in a common frame.
+constexpr float LargestFrameRest = 0.5f;
 
 /// Leaves of v what is across u; returns the rest.
 template <int N>
@@ -371,9 +474,66 @@ STAGE_INLINE void FitGroup(const Walk& walk, const Tile& tile, const SpanCorners
   extent.Tapers = !walk.IsStreaks();
 }
 
+/**
+ * The frame of a group: with a second axis that of the middle sample. Let that differ by δ at most.
+ * A sample's t has then B = (m_i . e) α + (e_i . m) β more on the axes of the others, where α and β are
+ * its parts on its own axes m_i and e_i. Each of the products is δ at most, and so B at most δ r W in the frame,
+ * r its stretch and W the half-width.
+ */
+template <int N, class Walk>
+STAGE_INLINE void SetFrame(const Walk& walk, const Tile& tile, const SpanCorners& corners,
+  std::size_t begin, std::size_t end, const Extent& extent, Group<N>& group)
+{
+  group.FrameRest = hn::Zero(DF());
+  if constexpr (N == 3)
+  {
+    if (walk.Setup.Biaxial)
+    {
+      const auto& axes = walk.Block.M;
+      V m[3];
+      for (int axis = 0; axis < N; ++axis)
+      {
+        m[axis] = Const(axes[axis][corners.Middle]);
+      }
+      TakeAlong(m, group.U);
+      const V inverse = Inverse(hn::Sqrt(Dot(m, m)));
+      for (V& component : m)
+      {
+        component = hn::Mul(component, inverse);
+      }
+      V least = Const(1.0f);
+      V second = Load(walk.Second + tile.First[begin]);
+      V across = Load(walk.Across + tile.First[begin]);
+      for (std::size_t r = begin; r < end; ++r)
+      {
+        const std::size_t i = tile.First[r];
+        const V own[3] = { Load(axes[0] + i), Load(axes[1] + i), Load(axes[2] + i) };
+        // m and -m are the same axis.
+        least = hn::Min(least, hn::Abs(Dot(own, m)));
+        second = hn::Min(second, Load(walk.Second + i));
+        across = hn::Min(across, Load(walk.Across + i));
+      }
+      // |m_i - m|² = 2 - 2 m_i . m
+      const V rest = hn::Sqrt(hn::Max(hn::Zero(DF()),
+        hn::MulAdd(hn::MinOfLanes(DF(), least), Const(-2.0f), Const(2.0f + Slack * Slack))));
+      group.Across = GetFrame(
+        group.U, m, hn::MinOfLanes(DF(), second), hn::MinOfLanes(DF(), across));
+      const V wider = hn::Mul(rest, group.Across.Stretch);
+      // Axes that differ too much are as good as none.
+      if (hn::GetLane(wider) < LargestFrameRest)
+      {
+        group.FrameRest = hn::Mul(wider, Const(extent.HalfWidth));
+        return;
+      }
+    }
+  }
+  group.Across = GetRoundFrame(group.U);
+}
+
 /// What follows from the numbers that FitGroup finds.
 template <int N, class Walk>
-STAGE_INLINE void FinishGroup(const Walk& walk, const Extent& extent, Group<N>& group)
+STAGE_INLINE void FinishGroup(const Walk& walk, const Tile& tile, const SpanCorners& corners,
+  std::size_t begin, std::size_t end, const Extent& extent, Group<N>& group)
 {
   ToDistances(walk, group.PlaceStep[0]);
   ToDistances(walk, group.PlaceStep[1]);
@@ -382,6 +542,7 @@ STAGE_INLINE void FinishGroup(const Walk& walk, const Extent& extent, Group<N>& 
     group.PlaceRest = hn::Add(group.PlaceRest, group.PlaceRest);
   }
   SetAcrossFlow(group);
+  SetFrame(walk, tile, corners, begin, end, extent, group);
   group.SetBounds(extent);
 }
 } // namespace HWY_NAMESPACE

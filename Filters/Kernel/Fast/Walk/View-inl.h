@@ -28,7 +28,7 @@ struct Span
   float Mu[TileRegisters];
   float HalfLambda = 0.0f;
   float HalfMu = 0.0f;
-  /// Across the flow.
+  /// Across the flow, in the group's frame.
   V Bend[AxesAcross<N>];
   V PlaceStep[2][AxesAcross<N>];
   V UStep[2][AxesAcross<N>];
@@ -43,12 +43,12 @@ struct Span
     , Whole(group)
     , Size(extent)
   {
-    ToAcross<N>(group.Bend, group.U, this->Bend);
+    group.Across.Take(group.Bend, this->Bend);
     for (int k = 0; k < 2; ++k)
     {
-      ToAcross<N>(group.PlaceStep[k], group.U, this->PlaceStep[k]);
-      ToAcross<N>(group.UStep[k], group.U, this->UStep[k]);
-      ToAcross<N>(group.BendStep[k], group.U, this->BendStep[k]);
+      group.Across.Take(group.PlaceStep[k], this->PlaceStep[k]);
+      group.Across.Take(group.UStep[k], this->UStep[k]);
+      group.Across.Take(group.BendStep[k], this->BendStep[k]);
     }
     for (std::size_t r = begin; r < end; ++r)
     {
@@ -62,8 +62,8 @@ struct Span
   }
 };
 
-/// How a span sees corners: across the flow they are at T - λ Step[0] - μ Step[1], in reach if
-/// within Width.
+/// How a span sees corners: across the flow, in its frame, they are at T - λ Step[0] - μ Step[1], in
+/// reach if within Width.
 template <int N>
 struct View
 {
@@ -117,7 +117,7 @@ public:
     {
       V nearest = hn::Mul(Dot(t, this->Seen.Step[0]), this->InverseStep2);
       nearest = hn::Max(hn::Min(nearest, this->HalfLambda), hn::Neg(this->HalfLambda));
-      for (int axis = 0; axis < N; ++axis)
+      for (int axis = 0; axis < AxesAcross<N>; ++axis)
       {
         t[axis] = hn::NegMulAdd(nearest, this->Seen.Step[0][axis], t[axis]);
       }
@@ -156,13 +156,12 @@ STAGE_INLINE View<N> GetView(const Walk& walk, const Span<N>& span, const V (&co
     }
   }
   const V s = Dot(v, group.U);
-  ToAcross<N>(v, group.U, view.T);
+  group.Across.Take(v, view.T);
   const V sag = hn::Mul(hn::Mul(s, s), Const(0.5f));
   V steps = hn::Zero(DF());
   for (int k = 0; k < 2; ++k)
   {
-    // v UStep is that of the part across.
-    const V sStep = hn::Sub(Dot(view.T, span.UStep[k]), group.AlongStep[k]);
+    const V sStep = hn::Sub(Dot(v, group.UStep[k]), group.AlongStep[k]);
     steps = hn::Add(steps, hn::Abs(sStep));
     for (int axis = 0; axis < AxesAcross<N>; ++axis)
     {

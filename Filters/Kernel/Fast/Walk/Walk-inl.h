@@ -115,7 +115,7 @@ private:
     FitGroup(this->Setup, *this->Samples, corners, begin, end, origin, group, extent);
     if (hn::GetLane(group.PlaceRest) < LargestSpread) // else it cannot be
     {
-      FinishGroup(this->Setup, extent, group);
+      FinishGroup(this->Setup, *this->Samples, corners, begin, end, extent, group);
       const V row = this->Setup.IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
       const Reach<N> reach(group, extent, row);
       const float wider = hn::GetLane(reach.LargestWidth) - extent.HalfWidth;
@@ -207,6 +207,9 @@ private:
     HWY_ALIGN std::int32_t firsts[Lanes];
     HWY_ALIGN std::int32_t lasts[Lanes];
     const IndexAxis axis = GetIndexAxis(this->Setup, reach, 0);
+    const IndexAxis axisY = GetIndexAxis(this->Setup, reach, 1);
+    const IndexAxis axisZ = GetIndexAxis(this->Setup, reach, N - 1);
+    const V length = hn::Add(reach.Length, Const(this->Setup.Setup.JitterRadius));
     for (std::size_t i = rows; i % Lanes != 0; ++i)
     {
       rowY[i] = rowZ[i] = 0; // lanes that nobody looks at
@@ -217,8 +220,16 @@ private:
       V high = axis.BoxHigh;
       if (this->Setup.Params.AnisotropicWeight)
       {
-        CutRows(this->Setup, reach, hn::ConvertTo(DF(), hn::LoadU(DI(), rowY + i)),
-          hn::ConvertTo(DF(), hn::LoadU(DI(), rowZ + i)), low, high);
+        const V y = hn::ConvertTo(DF(), hn::LoadU(DI(), rowY + i));
+        const V z = hn::ConvertTo(DF(), hn::LoadU(DI(), rowZ + i));
+        V begin = hn::Neg(length);
+        V end = length;
+        if constexpr (N == 3)
+        {
+          Narrow(this->Setup, reach, 2, axisZ, z, begin, end);
+        }
+        Narrow(this->Setup, reach, 1, axisY, y, begin, end);
+        CutRows(this->Setup, reach, y, z, begin, end, low, high);
       }
       hn::Store(ToCorners(hn::Ceil(low)), DI(), firsts);
       hn::Store(ToCorners(hn::Floor(high)), DI(), lasts);
@@ -252,7 +263,14 @@ private:
   // ---- samples apart ----------------------------------------------------------------------------
 
   /// Every sample of a register goes along the same rows, counted from its own cell, by itself.
-  HWY_NOINLINE void AddApart(std::size_t r)
+  STAGE_INLINE void AddApart(std::size_t r)
+  {
+    this->WithKind(
+      [&](auto kind) HWY_ATTR { this->template AddSurfletsApart<decltype(kind)>(r); });
+  }
+
+  template <class SurfletsKind>
+  HWY_NOINLINE void AddSurfletsApart(std::size_t r)
   {
     const std::size_t from = this->Samples->First[r];
     VU origin[N];
@@ -262,19 +280,62 @@ private:
     }
     const Reach<N> reach = GetReachApart<N>(this->Setup, from);
     const Sample<N> sample(this->Setup.Setup, this->Setup.Block, from, origin);
+    SurfletSums<N> sums = this->GetTotal(r);
+    std::size_t visited = 0;
     const IndexAxis axisX = GetIndexAxis(this->Setup, reach, 0);
     const IndexAxis axisY = GetIndexAxis(this->Setup, reach, 1);
     const V length = hn::Add(reach.Length, Const(this->Setup.Setup.JitterRadius));
-    V first;
-    V last;
+    // The rows of a layer from the least of `first` to the greatest of `last`.
+    const auto addRows = [&](V low, V high, int z, VU hashZ) HWY_ATTR
+    {
+      V first;
+      V last;
+      GetRange(this->Setup, reach, 1, axisY, low, high, first, last);
+      const auto none = hn::Gt(first, last);
+      const int lastY = ToCorner(GreatestLane(hn::IfThenElse(none, Const(-1e9f), last)));
+      for (int y = ToCorner(LeastLane(hn::IfThenElse(none, Const(1e9f), first))); y <= lastY; ++y)
+      {
+        const V rowY = Const(static_cast<float>(y));
+        const V rowZ = Const(static_cast<float>(z));
+        V begin = axisX.BoxLow;
+        V end = axisX.BoxHigh;
+        if (this->Setup.Params.AnisotropicWeight)
+        {
+          V rowLow = low;
+          V rowHigh = high;
+          Narrow(this->Setup, reach, 1, axisY, rowY, rowLow, rowHigh);
+          CutRows(this->Setup, reach, rowY, rowZ, rowLow, rowHigh, begin, end);
+        }
+        const VU hashY = HashAxis(this->Setup, origin, 1, hn::Set(DI(), y), hashZ);
+        V x = hn::Max(hn::Ceil(begin), Const(-FarthestCorner));
+        end = hn::Min(hn::Floor(end), Const(FarthestCorner));
+        for (; !hn::AllFalse(DF(), hn::Le(x, end)); x = hn::Add(x, Const(1.0f)))
+        {
+          // A sample that has no corner here any more is too far from this one.
+          V offset[N];
+          offset[0] = x;
+          offset[1] = rowY;
+          if constexpr (N == 3)
+          {
+            offset[2] = rowZ;
+          }
+          const VU hash = HashJoinAxes(HashAxis(this->Setup, origin, 0, ToCorners(x), hashY));
+          AddSurflet<SurfletsKind>(
+            this->Setup, sample, Describe(this->Setup, offset, hash), sums);
+          ++visited;
+        }
+      }
+    };
+    const VU seed = hn::Set(DU(), this->Setup.Octave.Seed);
     if constexpr (N == 2)
     {
-      GetRange(this->Setup, reach, 1, axisY, hn::Neg(length), length, first, last);
-      this->AddRowsApart(reach, axisX, r, sample, origin, first, last, 0);
+      addRows(hn::Neg(length), length, 0, seed);
     }
     else
     {
       const IndexAxis axisZ = GetIndexAxis(this->Setup, reach, 2);
+      V first;
+      V last;
       GetRange(this->Setup, reach, 2, axisZ, hn::Neg(length), length, first, last);
       const int lastZ = ToCorner(GreatestLane(last));
       for (int z = ToCorner(LeastLane(first)); z <= lastZ; ++z)
@@ -285,57 +346,11 @@ private:
         {
           Narrow(this->Setup, reach, 2, axisZ, Const(static_cast<float>(z)), low, high);
         }
-        GetRange(this->Setup, reach, 1, axisY, low, high, first, last);
-        this->AddRowsApart(reach, axisX, r, sample, origin, first, last, z);
+        addRows(low, high, z, HashAxis(this->Setup, origin, 2, hn::Set(DI(), z), seed));
       }
     }
-  }
-
-  /// The corners of the rows from the least of `first` to the greatest of `last`.
-  STAGE_INLINE void AddRowsApart(const Reach<N>& reach, const IndexAxis& axisX, std::size_t r,
-    const Sample<N>& sample, const VU (&origin)[N], V first, V last, int z)
-  {
-    const auto none = hn::Gt(first, last);
-    const int lastY = ToCorner(GreatestLane(hn::IfThenElse(none, Const(-1e9f), last)));
-    for (int y = ToCorner(LeastLane(hn::IfThenElse(none, Const(1e9f), first))); y <= lastY; ++y)
-    {
-      V low = axisX.BoxLow;
-      V high = axisX.BoxHigh;
-      if (this->Setup.Params.AnisotropicWeight)
-      {
-        CutRows(this->Setup, reach, Const(static_cast<float>(y)), Const(static_cast<float>(z)), low,
-          high);
-      }
-      const VI begin = ToCorners(hn::Ceil(low));
-      const VI steps = hn::Sub(ToCorners(hn::Floor(high)), begin);
-      const auto most = static_cast<int>(GreatestLane(hn::ConvertTo(DF(), steps)));
-      for (int step = 0; step <= most; ++step)
-      {
-        // A sample that has no corner here any more is too far from this one.
-        VI corner[N];
-        corner[0] = hn::Add(begin, hn::Set(DI(), step));
-        corner[1] = hn::Set(DI(), y);
-        if constexpr (N == 3)
-        {
-          corner[2] = hn::Set(DI(), z);
-        }
-        V offset[N];
-        for (int axis = 0; axis < N; ++axis)
-        {
-          offset[axis] = hn::ConvertTo(DF(), corner[axis]);
-        }
-        const Corner<N> described =
-          Describe(this->Setup, offset, HashCorners(this->Setup, origin, corner));
-        this->WithKind(
-          [&](auto kind) HWY_ATTR
-          {
-            SurfletSums<N> sums = this->GetTotal(r);
-            AddSurflet<decltype(kind)>(this->Setup, sample, described, sums);
-            this->SetTotal(r, sums);
-          });
-        this->Visited += this->Samples->GetCount(r);
-      }
-    }
+    this->SetTotal(r, sums);
+    this->Visited += visited * this->Samples->GetCount(r);
   }
 
   /// Adds those corners of the list that reach the samples of a span to their sums.

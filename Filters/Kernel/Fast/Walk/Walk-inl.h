@@ -207,8 +207,7 @@ private:
     HWY_ALIGN std::int32_t firsts[Lanes];
     HWY_ALIGN std::int32_t lasts[Lanes];
     const IndexAxis axis = GetIndexAxis(this->Setup, reach, 0);
-    const IndexAxis axisY = GetIndexAxis(this->Setup, reach, 1);
-    const IndexAxis axisZ = GetIndexAxis(this->Setup, reach, N - 1);
+    const IndexAxis axisLast = GetIndexAxis(this->Setup, reach, N - 1);
     const V length = hn::Add(reach.Length, Const(this->Setup.Setup.JitterRadius));
     for (std::size_t i = rows; i % Lanes != 0; ++i)
     {
@@ -224,11 +223,7 @@ private:
         const V z = hn::ConvertTo(DF(), hn::LoadU(DI(), rowZ + i));
         V begin = hn::Neg(length);
         V end = length;
-        if constexpr (N == 3)
-        {
-          Narrow(this->Setup, reach, 2, axisZ, z, begin, end);
-        }
-        Narrow(this->Setup, reach, 1, axisY, y, begin, end);
+        Narrow(this->Setup, reach, N - 1, axisLast, N == 2 ? y : z, begin, end);
         CutRows(this->Setup, reach, y, z, begin, end, low, high);
       }
       hn::Store(ToCorners(hn::Ceil(low)), DI(), firsts);
@@ -301,10 +296,7 @@ private:
         V end = axisX.BoxHigh;
         if (this->Setup.Params.AnisotropicWeight)
         {
-          V rowLow = low;
-          V rowHigh = high;
-          Narrow(this->Setup, reach, 1, axisY, rowY, rowLow, rowHigh);
-          CutRows(this->Setup, reach, rowY, rowZ, rowLow, rowHigh, begin, end);
+          CutRows(this->Setup, reach, rowY, rowZ, low, high, begin, end);
         }
         const VU hashY = HashAxis(this->Setup, origin, 1, hn::Set(DI(), y), hashZ);
         V x = hn::Max(hn::Ceil(begin), Const(-FarthestCorner));

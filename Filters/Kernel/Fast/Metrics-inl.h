@@ -188,31 +188,88 @@ inline void SetAxes(const Vector<3>& u, const Vector<3>& m, std::size_t to, Metr
   }
 }
 
+/// a . b, added up as Eigen does.
+HWY_INLINE VD DotInDouble(const VD (&a)[3], const VD (&b)[3])
+{
+  return hn::Add(hn::Mul(a[0], b[0]), hn::Add(hn::Mul(a[1], b[1]), hn::Mul(a[2], b[2])));
+}
+
 /**
  * Unit vectors from `at` on projected on the tangent planes of its normals, in double since a steep
  * vector leaves little; a sample without a normal is not on a surface and keeps its vector.
  */
-void ProjectOnSurface(
+HWY_NOINLINE void ProjectOnSurface(
   const float* vectors, const float* normals, std::size_t at, std::size_t count, MetricBlock& block)
 {
-  for (std::size_t i = 0; i < count; ++i)
+  constexpr std::size_t half = hn::MaxLanes(DD());
+  HWY_ALIGN float tail[2][3 * half] = {};
+  const VD zero = hn::Zero(DD());
+  for (std::size_t i = 0; i < count; i += half)
   {
-    const std::size_t to = at + i;
-    const Vector<3> normal = Eigen::Map<const Eigen::Vector3f>(normals + 3 * i).cast<double>();
-    const double length = normal.norm();
-    const bool onSurface = length > 0.0 && std::isfinite(length);
-    const Vector<3> m = onSurface ? Vector<3>(normal / length) : Vector<3>::Zero();
-    Vector<3> u(block.U[0][to], block.U[1][to], block.U[2][to]);
-    if (onSurface && !u.isZero(0.0))
+    const float* from[2] = { vectors + 3 * i, normals + 3 * i };
+    if (i + half > count)
     {
-      const Vector<3> vector = Eigen::Map<const Eigen::Vector3f>(vectors + 3 * i).cast<double>();
-      u = vector.normalized();
-      u -= u.dot(m) * m;
-      // A vector along the normal has no direction on the surface: what is left of it is rounding.
-      const double inPlane = u.norm();
-      u = inPlane > SmallestInPlane ? Vector<3>(u / inPlane) : Vector<3>::Zero();
+      for (int k = 0; k < 2; ++k)
+      {
+        std::copy(from[k], from[k] + 3 * (count - i), tail[k]);
+        from[k] = tail[k];
+      }
     }
-    SetAxes(u, m, to, block);
+    VD v[2][3];
+    for (int k = 0; k < 2; ++k)
+    {
+      hn::Vec<DFH> tuple[3];
+      hn::LoadInterleaved3(DFH(), from[k], tuple[0], tuple[1], tuple[2]);
+      for (int axis = 0; axis < 3; ++axis)
+      {
+        v[k][axis] = hn::PromoteTo(DD(), tuple[axis]);
+      }
+    }
+    VD(&u)[3] = v[0];
+    VD(&m)[3] = v[1];
+    const VD length = hn::Sqrt(DotInDouble(m, m));
+    const auto onSurface = hn::And(hn::Gt(length, zero), hn::IsFinite(length));
+    const std::size_t to = at + i;
+    VD unit[3];
+    auto any = hn::Lt(zero, zero);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      m[axis] = hn::IfThenElseZero(onSurface, hn::Div(m[axis], length));
+      unit[axis] = hn::PromoteTo(DD(), hn::LoadU(DFH(), block.U[axis] + to));
+      any = hn::Or(any, hn::Ne(unit[axis], zero));
+    }
+    const VD norm = hn::Sqrt(DotInDouble(u, u));
+    for (VD& component : u)
+    {
+      component = hn::Div(component, norm);
+    }
+    const VD along = DotInDouble(u, m);
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      u[axis] = hn::Sub(u[axis], hn::Mul(along, m[axis]));
+    }
+    // A vector along the normal has no direction on the surface: what is left of it is rounding.
+    const VD inPlane = hn::Sqrt(DotInDouble(u, u));
+    const auto steep = hn::Not(hn::Gt(inPlane, hn::Set(DD(), SmallestInPlane)));
+    VD rest[3];
+    VD third[3];
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const VD projected = hn::IfThenZeroElse(steep, hn::Div(u[axis], inPlane));
+      u[axis] = hn::IfThenElse(hn::And(onSurface, any), projected, unit[axis]);
+      const auto rounded = hn::DemoteTo(DFH(), u[axis]);
+      hn::StoreU(rounded, DFH(), block.U[axis] + to);
+      hn::StoreU(hn::DemoteTo(DFH(), m[axis]), DFH(), block.M[axis] + to);
+      rest[axis] = hn::Sub(u[axis], hn::PromoteTo(DD(), rounded));
+    }
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      const int j = (axis + 1) % 3;
+      const int k = (axis + 2) % 3;
+      third[axis] = hn::Sub(hn::Mul(u[j], m[k]), hn::Mul(u[k], m[j]));
+    }
+    hn::StoreU(hn::DemoteTo(DFH(), DotInDouble(rest, m)), DFH(), block.URest[0] + to);
+    hn::StoreU(hn::DemoteTo(DFH(), DotInDouble(rest, third)), DFH(), block.URest[1] + to);
   }
 }
 

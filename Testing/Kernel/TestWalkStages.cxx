@@ -9,6 +9,7 @@
 #include "SteerableNoise.h"
 #include "Surflet.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -55,11 +56,12 @@ struct CurvedTile
   std::unique_ptr<MetricBlock> Block{ new MetricBlock };
   Tile Samples{ TileRegisters, Lanes };
 
-  CurvedTile(unsigned seed, double step)
+  CurvedTile(unsigned seed, double step, bool biaxial = false)
   {
     this->Setup.Support = 1.0f;
     this->Setup.WindowReach = std::numeric_limits<float>::infinity();
     this->Setup.Curved = true;
+    this->Setup.Biaxial = biaxial;
     for (int i = 0; i < 3; ++i)
     {
       this->Setup.LatticeSteps[i][i] = 1.0f;
@@ -88,6 +90,18 @@ struct CurvedTile
         block.Fraction[axis][i] = static_cast<float>(place - cell);
         block.U[axis][i] = static_cast<float>(i % 7 == 3 ? -u[axis] : u[axis]); // an axis has no sense
         block.ClampedBend[axis][i] = static_cast<float>(bend[axis]);
+      }
+      if (biaxial)
+      {
+        // It turns around the flow, and has no sense either.
+        const double around = 0.4 * start + 0.2 * turn * step * static_cast<double>(i);
+        const Eigen::Vector3d first = u.unitOrthogonal();
+        const Eigen::Vector3d m = std::cos(around) * first + std::sin(around) * u.cross(first);
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          block.M[axis][i] = static_cast<float>(i % 5 == 2 ? -m[axis] : m[axis]);
+        }
+        block.BentSecond[i] = static_cast<float>(0.5 + 0.01 * static_cast<double>(i % 4));
       }
       if (N == 2)
       {
@@ -138,7 +152,18 @@ struct CurvedTile
     const Vector<N> v = this->GetVector(i, corner);
     const double s = v.dot(u);
     const Vector<N> t = v - s * u - 0.5 * s * s * bend;
-    return this->Block->BentAlong[i] * s * s + this->Block->BentAcross[i] * t.squaredNorm();
+    double across2 = this->Block->BentAcross[i] * t.squaredNorm();
+    if (this->Setup.Biaxial)
+    {
+      Vector<N> m;
+      for (int axis = 0; axis < N; ++axis)
+      {
+        m[axis] = this->Block->M[axis][i];
+      }
+      const double second = t.dot(m);
+      across2 += (this->Block->BentSecond[i] - this->Block->BentAcross[i]) * second * second;
+    }
+    return this->Block->BentAlong[i] * s * s + across2;
   }
 };
 
@@ -167,8 +192,12 @@ bool IsOnItsRow(
   HWY_ALIGN float highs[Lanes];
   V low = Const(-1e9f);
   V high = Const(1e9f);
+  const IndexAxis axis = GetIndexAxis(walk, reach, N - 1);
+  V begin = hn::Neg(reach.Length);
+  V end = reach.Length;
+  Narrow(walk, reach, N - 1, axis, Const(static_cast<float>(corner[N - 1])), begin, end);
   CutRows(walk, reach, Const(static_cast<float>(corner[1])), Const(static_cast<float>(corner[2])),
-    low, high);
+    begin, end, low, high);
   hn::Store(low, DF(), lows);
   hn::Store(high, DF(), highs);
   return lows[lane] <= corner[0] && corner[0] <= highs[lane];
@@ -176,10 +205,10 @@ bool IsOnItsRow(
 
 /// Corners within q < 1 of a sample that its rows, cut for it alone, leave out.
 template <int N>
-testing::StageErrors CheckReachApart(unsigned seed)
+testing::StageErrors CheckReachApart(unsigned seed, bool biaxial)
 {
   testing::StageErrors errors;
-  const CurvedTile<N> tile(seed, 0.1);
+  const CurvedTile<N> tile(seed, 0.1, biaxial);
   const auto walk = tile.GetWalk();
   const Reach<N> reach = GetReachApart<N>(walk, 0);
   for (std::size_t lane = 0; lane < Lanes; ++lane)
@@ -207,10 +236,10 @@ testing::StageErrors CheckReachApart(unsigned seed)
 /// Corners within q < 1 of samples of a span that are not on its rows, are sifted out, or are not
 /// seen.
 template <int N>
-testing::StageErrors CheckSpan(unsigned seed)
+testing::StageErrors CheckSpan(unsigned seed, bool biaxial)
 {
   testing::StageErrors errors;
-  const CurvedTile<N> tile(seed, 0.02);
+  const CurvedTile<N> tile(seed, 0.02, biaxial);
   const auto walk = tile.GetWalk();
   const std::size_t end = tile.Samples.Registers;
   const SpanCorners corners(tile.Samples, 0, end);
@@ -218,7 +247,7 @@ testing::StageErrors CheckSpan(unsigned seed)
   Group<N> group;
   Extent extent;
   FitGroup(walk, tile.Samples, corners, 0, end, origin, group, extent);
-  FinishGroup(walk, extent, group);
+  FinishGroup(walk, tile.Samples, corners, 0, end, extent, group);
   const Reach<N> reach(group, extent, hn::Abs(group.PlaceStep[0][0]));
   const Span<N> span(tile.Samples, corners, 0, end, group, extent);
   ForBox<N>(10,
@@ -361,16 +390,16 @@ testing::StageErrors CheckSurflet(unsigned seed)
   return errors;
 }
 
-testing::StageErrors Check(int stage, int dimension, unsigned seed)
+testing::StageErrors Check(int stage, int dimension, unsigned seed, bool biaxial)
 {
   switch (stage)
   {
     case 0:
       return dimension == 2 ? CheckLattice<2>(seed) : CheckLattice<3>(seed);
     case 1:
-      return dimension == 2 ? CheckReachApart<2>(seed) : CheckReachApart<3>(seed);
+      return dimension == 2 ? CheckReachApart<2>(seed, false) : CheckReachApart<3>(seed, biaxial);
     case 2:
-      return dimension == 2 ? CheckSpan<2>(seed) : CheckSpan<3>(seed);
+      return dimension == 2 ? CheckSpan<2>(seed, false) : CheckSpan<3>(seed, biaxial);
     default:
       return dimension == 2 ? CheckSurflet<2>(seed) : CheckSurflet<3>(seed);
   }
@@ -386,7 +415,7 @@ HWY_EXPORT(Check);
 
 namespace
 {
-void CheckAtAllLevels(int stage, double bound)
+void CheckAtAllLevels(int stage, double bound, bool biaxial = false)
 {
   for (std::int64_t target : testing::SimdLevels())
   {
@@ -395,7 +424,7 @@ void CheckAtAllLevels(int stage, double bound)
     {
       for (unsigned seed = 1; seed <= (stage == 2 ? 12 : 6); ++seed)
       {
-        const testing::StageErrors errors = HWY_DYNAMIC_DISPATCH(Check)(stage, dimension, seed);
+        const testing::StageErrors errors = HWY_DYNAMIC_DISPATCH(Check)(stage, dimension, seed, biaxial);
         SCOPED_TRACE(std::to_string(dimension) + "D, " + hwy::TargetName(target) + ", seed " +
           std::to_string(seed));
         EXPECT_GT(errors.Checked, 0u);
@@ -420,6 +449,12 @@ TEST(WalkStages, ReachOfASampleLosesNoCorner)
 TEST(WalkStages, RowsSiftAndViewOfASpanLoseNoCorner)
 {
   CheckAtAllLevels(2, 0.0);
+}
+
+TEST(WalkStages, SecondAxesLoseNoCorner)
+{
+  CheckAtAllLevels(1, 0.0, true);
+  CheckAtAllLevels(2, 0.0, true);
 }
 
 TEST(WalkStages, SurfletsAddUpAsInDouble)

@@ -94,7 +94,7 @@ struct CurvedTile
       if (biaxial)
       {
         // It turns around the flow, and has no sense either.
-        const double around = 0.4 * start + 0.2 * turn * step * static_cast<double>(i);
+        const double around = 0.4 * start + 0.12 * step * static_cast<double>(i);
         const Eigen::Vector3d first = u.unitOrthogonal();
         const Eigen::Vector3d m = std::cos(around) * first + std::sin(around) * u.cross(first);
         for (int axis = 0; axis < 3; ++axis)

@@ -196,8 +196,9 @@ bool IsOnItsRow(
   V begin = hn::Neg(reach.Length);
   V end = reach.Length;
   Narrow(walk, reach, N - 1, axis, Const(static_cast<float>(corner[N - 1])), begin, end);
-  CutRows(walk, reach, Const(static_cast<float>(corner[1])), Const(static_cast<float>(corner[2])),
-    begin, end, low, high);
+  RowCutter<N, WalkT> cutter(walk, reach);
+  cutter.SetLayer(Const(static_cast<float>(corner[2])), begin, end);
+  cutter.Cut(Const(static_cast<float>(corner[1])), low, high);
   hn::Store(low, DF(), lows);
   hn::Store(high, DF(), highs);
   return lows[lane] <= corner[0] && corner[0] <= highs[lane];

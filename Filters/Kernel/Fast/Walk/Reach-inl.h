@@ -273,122 +273,209 @@ STAGE_INLINE void GetRange(const Walk& walk, const Reach<N>& reach, int number,
 }
 
 /**
- * Interval of a register of rows, of what they have of the flow from `begin` to `end` (see Narrow).
- * That is cut into sections. In each the
- * parabola is close to a line, so that what the ellipsoid around it leaves of the row is a
- * quadratic's. With W the half-width, L the half-length, and e and a what t and s can be off, |t|
- * <= W √(1 - (|s| - a)²/L²) + e implies, by (x + y)² <= (1 + d) x² + (1 + 1/d) y² with d = e/W and
- * d = a/L,
+ * Cuts lattice rows out of a reach, layer by layer. What a layer has of the flow (see Narrow) is cut
+ * into sections. In each the parabola is close to a line, so that what the ellipsoid around it
+ * leaves of a row is a quadratic's. With W the half-width, L the half-length, and e and a what t and
+ * s can be off, |t| <= W √(1 - (|s| - a)²/L²) + e implies, by (x + y)² <= (1 + d) x² + (1 + 1/d) y²
+ * with d = e/W and d = a/L,
  *
  *   t² + W (W + e) s² / (L (L + a)) <= (W + e)² + W (W + e) a / L.
+ *
+ * s and t are linear in x and y, so this is A x² + 2 B x + C <= 0, where B is linear in y and C
+ * quadratic.
  */
 template <int N, class Walk>
-STAGE_INLINE void CutRows(
-  const Walk& walk, const Reach<N>& reach, V rowY, V rowZ, V begin, V end, V& low, V& high)
+class RowCutter
 {
-  V row[N];
-  V index[N];
-  index[0] = hn::Neg(reach.Place[0]);
-  index[1] = hn::Sub(rowY, reach.Place[1]);
-  if constexpr (N == 3)
+public:
+  STAGE_INLINE RowCutter(const Walk& walk, const Reach<N>& reach)
+    : Setup(walk)
+    , Whole(reach)
+    , Looseness(hn::Add(GetLooseness(walk, reach), Const(Slack)))
+    , X(walk, reach, 0)
+    , Y(walk, reach, 1)
   {
-    index[2] = hn::Sub(rowZ, reach.Place[2]);
+    this->InverseStep = Inverse(this->X.S);
+    if (reach.Tapers)
+    {
+      this->OverLength = hn::Mul(
+        hn::Add(reach.AlongReach, Const(walk.Setup.JitterRadius)), reach.InverseLength);
+      this->Taper = hn::Mul(reach.InverseLength,
+        hn::Div(reach.InverseLength, hn::Add(Const(1.0f), this->OverLength)));
+    }
+    else
+    {
+      this->OverLength = this->Taper = hn::Zero(DF());
+    }
   }
-  ToPlace(walk, index, row);
-  // s and the part t across the flow at the beginning of the row, and their changes along it.
-  V step[N];
-  for (int i = 0; i < N; ++i)
-  {
-    row[i] = hn::Add(row[i], Const(walk.Setup.JitterMiddle));
-    step[i] = Const(walk.Setup.LatticeSteps[i][0]);
-  }
-  const V s0 = Dot(row, reach.U);
-  const V se = Dot(step, reach.U);
-  V t0[AxesAcross<N>];
-  V te[AxesAcross<N>];
-  reach.Across.Take(row, t0);
-  reach.Across.Take(step, te);
-  const V inverse = Inverse(se);
-  const V radius = Const(walk.Setup.JitterRadius);
-  const V offAlong = hn::Add(reach.AlongReach, radius);
-  const V looseness = GetLooseness(walk, reach);
-  const V overLength = hn::Mul(offAlong, reach.InverseLength);
-  // 1 / (L (L + a))
-  const V tapers = reach.Tapers
-    ? hn::Mul(reach.InverseLength, hn::Div(reach.InverseLength, hn::Add(Const(1.0f), overLength)))
-    : hn::Zero(DF());
-  const auto any = hn::Le(begin, end);
-  V section = hn::Sub(end, begin);
-  int sections = 1;
-  if (walk.Setup.Curved)
-  {
-    // As many as leave the parabola little to be off a line.
-    const V sag = hn::Mul(hn::Mul(section, section), reach.BendLength);
-    const float most = GreatestLane(hn::IfThenElseZero(any, sag));
-    sections = most < 3.2f ? 1 : most < 12.8f ? 2 : 4;
-    section = hn::Mul(section, Const(1.0f / static_cast<float>(sections)));
-  }
-  const V offParabola = hn::Mul(hn::Mul(section, section), Const(1.0f / 16.0f));
 
-  V least = Const(1e9f);
-  V most = Const(-1e9f);
-  V beginX = hn::Mul(hn::Sub(begin, s0), inverse);
-  for (int i = 0; i < sections; ++i)
+  /// The rows of layer `z`, in 2D 0, have s in [begin, end].
+  STAGE_INLINE void SetLayer(V z, V begin, V end)
   {
-    end = hn::Add(begin, section);
-    const V endX = hn::Mul(hn::Sub(end, s0), inverse);
-    const V farthest = hn::Add(hn::Max(hn::Abs(begin), hn::Abs(end)), radius);
-    V off = hn::Add(Quadratic(reach.Off, farthest), looseness);
-    off = hn::Add(off, Const(Slack));
-    V t[AxesAcross<N>];
-    V change[AxesAcross<N>];
-    std::copy(t0, t0 + AxesAcross<N>, t);
-    std::copy(te, te + AxesAcross<N>, change);
+    const Walk& walk = this->Setup;
+    const Reach<N>& reach = this->Whole;
+    V row[N];
+    V index[N];
+    for (int i = 0; i < N; ++i)
+    {
+      index[i] = hn::Sub(i == 2 ? z : hn::Zero(DF()), reach.Place[i]);
+    }
+    ToPlace(walk, index, row);
+    for (int i = 0; i < N && walk.IsJittered(); ++i)
+    {
+      row[i] = hn::Add(row[i], Const(walk.Setup.JitterMiddle));
+    }
+    // s and the part t across the flow at x = y = 0.
+    const V s0 = Dot(row, reach.U);
+    V t0[AxesAcross<N>];
+    reach.Across.Take(row, t0);
+    // Lanes without any reach nothing, whatever these are.
+    const auto any = hn::Le(begin, end);
+    begin = hn::IfThenElseZero(any, begin);
+    V section = hn::IfThenElseZero(any, hn::Sub(end, begin));
+    this->Sections = 1;
     if (walk.Setup.Curved)
     {
-      // s²/2 is between m s - begin end/2 and (end - begin)²/8 less, m the middle.
-      off = hn::MulAdd(offParabola, reach.BendLength, off);
-      const V middle = hn::Mul(Const(0.5f), hn::Add(begin, end));
-      const V chord = hn::MulSub(middle, s0, hn::Mul(Const(0.5f), hn::Mul(begin, end)));
-      const V sag = hn::Sub(chord, offParabola);
-      const V sagChange = hn::Mul(middle, se);
-      for (int axis = 0; axis < AxesAcross<N>; ++axis)
+      // As many as leave the parabola little to be off a line.
+      const V sag = hn::Mul(hn::Mul(section, section), reach.BendLength);
+      if (!hn::AllTrue(DF(), hn::Lt(sag, Const(3.2f))))
       {
-        t[axis] = hn::NegMulAdd(sag, reach.BendAcross[axis], t[axis]);
-        change[axis] = hn::NegMulAdd(sagChange, reach.BendAcross[axis], change[axis]);
+        this->Sections = hn::AllTrue(DF(), hn::Lt(sag, Const(12.8f))) ? 2 : MostSections;
+        section = hn::Mul(section, Const(1.0f / static_cast<float>(this->Sections)));
       }
     }
-    const V width = hn::Add(reach.HalfWidth, off);
-    const V both = hn::Mul(reach.HalfWidth, width);
-    const V taper = hn::Mul(both, tapers);
-    const V limit =
-      hn::MulAdd(both, reach.Tapers ? overLength : hn::Zero(DF()), hn::Mul(width, width));
-    // A row along a streak that does not taper: what the clamped coefficient adds must not count.
-    V A = hn::MulAdd(hn::Mul(taper, se), se, Dot(change, change));
-    const V B = hn::MulAdd(hn::Mul(taper, s0), se, Dot(t, change));
-    V C = hn::Sub(hn::MulAdd(hn::Mul(taper, s0), s0, Dot(t, t)), limit);
-    if (!reach.Tapers)
+    const V offParabola = hn::Mul(hn::Mul(section, section), Const(1.0f / 16.0f));
+    this->Ends[0] = hn::Mul(hn::Sub(begin, s0), this->InverseStep);
+    for (int i = 0; i < this->Sections; ++i)
     {
-      const V clamped = hn::Max(A, Const(1e-6f));
-      C = hn::NegMulAdd(hn::Sub(clamped, A), Const(1e6f), C);
-      A = clamped;
+      end = hn::Add(begin, section);
+      this->Ends[i + 1] = hn::Mul(hn::Sub(end, s0), this->InverseStep);
+      const V farthest =
+        hn::Add(hn::Max(hn::Abs(begin), hn::Abs(end)), Const(walk.Setup.JitterRadius));
+      V off = hn::Add(Quadratic(reach.Off, farthest), this->Looseness);
+      V t[AxesAcross<N>];
+      V byX[AxesAcross<N>];
+      V byY[AxesAcross<N>];
+      for (int axis = 0; axis < AxesAcross<N>; ++axis)
+      {
+        t[axis] = t0[axis];
+        byX[axis] = this->X.T[axis];
+        byY[axis] = this->Y.T[axis];
+      }
+      if (walk.Setup.Curved)
+      {
+        // s²/2 is between m s - begin end/2 and (end - begin)²/8 less, m the middle.
+        off = hn::MulAdd(offParabola, reach.BendLength, off);
+        const V middle = hn::Mul(Const(0.5f), hn::Add(begin, end));
+        const V chord = hn::MulSub(middle, s0, hn::Mul(Const(0.5f), hn::Mul(begin, end)));
+        const V sag = hn::Sub(chord, offParabola);
+        const V sagByX = hn::Mul(middle, this->X.S);
+        const V sagByY = hn::Mul(middle, this->Y.S);
+        for (int axis = 0; axis < AxesAcross<N>; ++axis)
+        {
+          t[axis] = hn::NegMulAdd(sag, reach.BendAcross[axis], t[axis]);
+          byX[axis] = hn::NegMulAdd(sagByX, reach.BendAcross[axis], byX[axis]);
+          byY[axis] = hn::NegMulAdd(sagByY, reach.BendAcross[axis], byY[axis]);
+        }
+      }
+      const V width = hn::Add(reach.HalfWidth, off);
+      const V both = hn::Mul(reach.HalfWidth, width);
+      const V taper = hn::Mul(both, this->Taper);
+      const V limit = hn::MulAdd(both, this->OverLength, hn::Mul(width, width));
+      const V taperX = hn::Mul(taper, this->X.S);
+      const V taperY = hn::Mul(taper, this->Y.S);
+      Section& cut = this->Cuts[i];
+      cut.A = hn::MulAdd(taperX, this->X.S, Dot(byX, byX));
+      cut.B[0] = hn::MulAdd(taperX, s0, Dot(t, byX));
+      cut.B[1] = hn::MulAdd(taperX, this->Y.S, Dot(byY, byX));
+      cut.C[0] = hn::Sub(hn::MulAdd(hn::Mul(taper, s0), s0, Dot(t, t)), limit);
+      const V half = hn::MulAdd(taperY, s0, Dot(t, byY));
+      cut.C[1] = hn::Add(half, half);
+      cut.C[2] = hn::MulAdd(taperY, this->Y.S, Dot(byY, byY));
+      if (!reach.Tapers)
+      {
+        // A row along a streak that does not taper: what the clamped coefficient adds must not
+        // count.
+        const V clamped = hn::Max(cut.A, Const(1e-6f));
+        cut.C[0] = hn::NegMulAdd(hn::Sub(clamped, cut.A), Const(1e6f), cut.C[0]);
+        cut.A = clamped;
+      }
+      cut.InverseA = hn::Div(Const(1.0f), cut.A);
+      cut.C[0] = hn::IfThenElse(any, cut.C[0], Const(1e9f));
+      begin = end;
     }
-    const V discriminant = hn::NegMulAdd(A, C, hn::Mul(B, B));
-    const V inverseA = hn::Div(Const(1.0f), A);
-    const V root = hn::Sqrt(hn::Max(discriminant, hn::Zero(DF())));
-    const V first = hn::Max(hn::Min(beginX, endX), hn::Mul(hn::Neg(hn::Add(B, root)), inverseA));
-    const V last = hn::Min(hn::Max(beginX, endX), hn::Mul(hn::Sub(root, B), inverseA));
-    const auto some = hn::And(any, hn::And(
-      hn::Le(first, hn::Add(last, Const(2e-3f))), hn::Ge(discriminant, hn::Zero(DF()))));
-    least = hn::IfThenElse(some, hn::Min(least, first), least);
-    most = hn::IfThenElse(some, hn::Max(most, last), most);
-    begin = end;
-    beginX = endX;
   }
-  const V slack = hn::Add(reach.RowSpread, Const(Slack));
-  low = hn::Max(low, hn::Sub(least, slack));
-  high = hn::Min(high, hn::Add(most, slack));
-}
+
+  /// Leaves of [low, high] what is in reach of row `y` of the layer.
+  STAGE_INLINE void Cut(V y, V& low, V& high) const
+  {
+    V least = Const(1e9f);
+    V most = Const(-1e9f);
+    const V shift = hn::Mul(hn::Mul(y, this->Y.S), this->InverseStep);
+    V begin = hn::Sub(this->Ends[0], shift);
+    for (int i = 0; i < this->Sections; ++i)
+    {
+      const Section& cut = this->Cuts[i];
+      const V end = hn::Sub(this->Ends[i + 1], shift);
+      const V B = hn::MulAdd(cut.B[1], y, cut.B[0]);
+      const V discriminant =
+        hn::NegMulAdd(cut.A, Quadratic(cut.C, y), hn::Mul(B, B));
+      const V root = hn::Sqrt(hn::Max(discriminant, hn::Zero(DF())));
+      const V first =
+        hn::Max(hn::Min(begin, end), hn::Mul(hn::Neg(hn::Add(B, root)), cut.InverseA));
+      const V last = hn::Min(hn::Max(begin, end), hn::Mul(hn::Sub(root, B), cut.InverseA));
+      const auto some = hn::And(
+        hn::Le(first, hn::Add(last, Const(2e-3f))), hn::Ge(discriminant, hn::Zero(DF())));
+      least = hn::IfThenElse(some, hn::Min(least, first), least);
+      most = hn::IfThenElse(some, hn::Max(most, last), most);
+      begin = end;
+    }
+    const V slack = hn::Add(this->Whole.RowSpread, Const(Slack));
+    low = hn::Max(low, hn::Sub(least, slack));
+    high = hn::Min(high, hn::Add(most, slack));
+  }
+
+private:
+  static constexpr int MostSections = 4;
+  /// What s and t change by from one corner to the next on an axis of the lattice.
+  struct Step
+  {
+    V S;
+    V T[AxesAcross<N>];
+
+    STAGE_INLINE Step(const Walk& walk, const Reach<N>& reach, int axis)
+    {
+      V step[N];
+      for (int i = 0; i < N; ++i)
+      {
+        step[i] = Const(walk.Setup.LatticeSteps[i][axis]);
+      }
+      this->S = Dot(step, reach.U);
+      reach.Across.Take(step, this->T);
+    }
+  };
+  struct Section
+  {
+    V A;
+    V InverseA;
+    V B[2];
+    V C[3];
+  };
+
+  const Walk& Setup;
+  const Reach<N>& Whole;
+  V Looseness;
+  const Step X;
+  const Step Y;
+  V InverseStep;
+  /// a / L and 1 / (L (L + a)); 0 of streaks, which do not taper.
+  V OverLength;
+  V Taper;
+  int Sections;
+  /// The x at which they begin and end where y is 0.
+  V Ends[MostSections + 1];
+  Section Cuts[MostSections];
+};
 } // namespace HWY_NAMESPACE
 } // namespace steerable
 HWY_AFTER_NAMESPACE();

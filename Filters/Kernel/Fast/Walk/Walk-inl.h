@@ -208,6 +208,7 @@ private:
     HWY_ALIGN std::int32_t lasts[Lanes];
     const IndexAxis axis = GetIndexAxis(this->Setup, reach, 0);
     const IndexAxis axisLast = GetIndexAxis(this->Setup, reach, N - 1);
+    RowCutter<N, WalkSetup<N, Kind>> cutter(this->Setup, reach);
     const V length = hn::Add(reach.Length, Const(this->Setup.Setup.JitterRadius));
     for (std::size_t i = rows; i % Lanes != 0; ++i)
     {
@@ -224,7 +225,8 @@ private:
         V begin = hn::Neg(length);
         V end = length;
         Narrow(this->Setup, reach, N - 1, axisLast, N == 2 ? y : z, begin, end);
-        CutRows(this->Setup, reach, y, z, begin, end, low, high);
+        cutter.SetLayer(z, begin, end);
+        cutter.Cut(y, low, high);
       }
       hn::Store(ToCorners(hn::Ceil(low)), DI(), firsts);
       hn::Store(ToCorners(hn::Floor(high)), DI(), lasts);
@@ -280,12 +282,17 @@ private:
     const IndexAxis axisX = GetIndexAxis(this->Setup, reach, 0);
     const IndexAxis axisY = GetIndexAxis(this->Setup, reach, 1);
     const V length = hn::Add(reach.Length, Const(this->Setup.Setup.JitterRadius));
+    RowCutter<N, WalkSetup<N, Kind>> cutter(this->Setup, reach);
     // The rows of a layer from the least of `first` to the greatest of `last`.
     const auto addRows = [&](V low, V high, int z, VU hashZ) HWY_ATTR
     {
       V first;
       V last;
       GetRange(this->Setup, reach, 1, axisY, low, high, first, last);
+      if (this->Setup.Params.AnisotropicWeight)
+      {
+        cutter.SetLayer(Const(static_cast<float>(z)), low, high);
+      }
       const auto none = hn::Gt(first, last);
       const int lastY = ToCorner(GreatestLane(hn::IfThenElse(none, Const(-1e9f), last)));
       for (int y = ToCorner(LeastLane(hn::IfThenElse(none, Const(1e9f), first))); y <= lastY; ++y)
@@ -296,7 +303,7 @@ private:
         V end = axisX.BoxHigh;
         if (this->Setup.Params.AnisotropicWeight)
         {
-          CutRows(this->Setup, reach, rowY, rowZ, low, high, begin, end);
+          cutter.Cut(rowY, begin, end);
         }
         const VU hashY = HashAxis(this->Setup, origin, 1, hn::Set(DI(), y), hashZ);
         V x = hn::Max(hn::Ceil(begin), Const(-FarthestCorner));

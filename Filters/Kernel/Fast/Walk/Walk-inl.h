@@ -119,7 +119,7 @@ private:
       const V row = this->Setup.IsOblique() ? hn::Zero(DF()) : hn::Abs(group.PlaceStep[0][0]);
       const Reach<N> reach(group, extent, row);
       const float wider = hn::GetLane(reach.LargestWidth) - extent.HalfWidth;
-      if (wider < LargestSpread &&
+      if (wider < (end - begin > 1 ? LargestSpread : LargestAlone) &&
         hn::GetLane(reach.Spread) < LargestExtent)
       {
         this->Widest = std::max(this->Widest, wider);
@@ -455,6 +455,9 @@ private:
 
   /// Samples that are farther apart than this, as their surflets see it, do not share a list.
   static constexpr float LargestSpread = N == 2 && Kind == WalkKind::Plain ? 2.5f : 1.5f;
+
+  /// A register alone shares its list with no other: from here on its samples are faster apart.
+  static constexpr float LargestAlone = std::min(LargestSpread, 0.5f);
 
   /// Nor do samples this many cells from their middle: distances of corners must keep their
   /// precision.

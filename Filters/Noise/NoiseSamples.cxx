@@ -338,30 +338,35 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
 
   PointSums sums(this->DataSet, normals, DirectionSteps);
   // Neighbours that face the other way count all the same: the metric has no sides.
-  sums.AddCells(true,
+  sums.Sum(true,
     [&]
     {
-      return [&, read = DatasetCells::Reader(cells)](vtkIdType cell, PointSums::Shares& shares) mutable
+      return [&, read = DatasetCells::Reader(cells), block = CellBlock(), steps = CornerVectors()](
+               vtkIdType begin, vtkIdType end, PointSums::Shares& shares) mutable
       {
-        if (!isSurface(cell))
+        const auto append = [&](vtkIdType cell, int type, const CellIds& ids)
         {
-          return;
-        }
-        const CellIds ids = read(cell);
-        const Eigen::Vector3d flat = GetNormal(places, cells.GetType(cell), ids);
-        CurvedCell* curved = getCurved(cell);
-        for (vtkIdType i = 0; i < ids.size(); ++i)
-        {
-          Eigen::Vector3d normal = curved ? curved->GetNormal(static_cast<int>(i)) : flat;
-          normal = normal.isZero(0.0) ? flat : normal;
-          if (!normal.isZero(0.0))
+          const Eigen::Vector3d flat = GetNormal(places, type, ids);
+          CurvedCell* curved = getCurved(cell);
+          for (vtkIdType i = 0; i < ids.size(); ++i)
           {
-            sums.Append(shares, ids[i], normal);
+            Eigen::Vector3d normal = curved ? curved->GetNormal(static_cast<int>(i)) : flat;
+            normal = normal.isZero(0.0) ? flat : normal;
+            if (!normal.isZero(0.0))
+            {
+              sums.Append(shares, ids[i], normal);
+            }
+          }
+        };
+        for (vtkIdType cell = begin; cell < end; ++cell)
+        {
+          if (isSurface(cell))
+          {
+            append(cell, cells.GetType(cell), read(cell));
           }
         }
       };
     });
-  sums.Finish();
   for (vtkIdType point = 0; own && point < normals->GetNumberOfTuples(); ++point)
   {
     const Eigen::Map<const Eigen::Vector3f> normal(normals->GetPointer(3 * point));

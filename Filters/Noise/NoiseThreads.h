@@ -14,11 +14,13 @@
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -75,6 +77,38 @@ void WithThreads(Work&& work)
   {
     work();
   }
+}
+
+/**
+ * Runs the jobs 0, 1, ... in threads that each take the next one, with work(job) of its own from `makeWork()`. A job
+ * starts when the first `before(job)` are done: at most all before it, and no fewer than the job before it asks for.
+ * For steps too short for a vtkSMPTools::For each: VTK 9.2 starts its threads anew every time. Nothing waits for a job
+ * that no thread has taken, so one thread gets through as well.
+ */
+template <typename Before, typename MakeWork>
+void RunInOrder(vtkIdType jobs, Before&& before, MakeWork&& makeWork)
+{
+  struct Counted
+  {
+    std::atomic<vtkIdType>& Done;
+    ~Counted() { this->Done.fetch_add(1, std::memory_order_release); } // whatever was thrown
+  };
+  std::atomic<vtkIdType> taken{ 0 };
+  std::atomic<vtkIdType> done{ 0 };
+  vtkSMPTools::For(0, std::max(vtkSMPTools::GetEstimatedNumberOfThreads(), 1), 1,
+    [&](vtkIdType, vtkIdType)
+    {
+      auto work = makeWork();
+      for (vtkIdType job = taken++; job < jobs; job = taken++)
+      {
+        while (done.load(std::memory_order_acquire) < before(job))
+        {
+          std::this_thread::yield();
+        }
+        const Counted counted{ done };
+        work(job);
+      }
+    });
 }
 
 /**

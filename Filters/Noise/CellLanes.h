@@ -156,7 +156,7 @@ struct CellBlock
  */
 template <class PlaceOf, class IsThere, class Add, class Work, class Other>
 void VisitCells(const DatasetCells& cells, DatasetCells::Reader& read, vtkIdType begin, vtkIdType end, vtkIdType step,
-  CellBlock& block, PlaceOf&& placeOf, IsThere&& isThere, Add&& add, Work&& work, Other&& other)
+  bool inBlocks, CellBlock& block, PlaceOf&& placeOf, IsThere&& isThere, Add&& add, Work&& work, Other&& other)
 {
   const auto empty = [&]
   {
@@ -172,7 +172,7 @@ void VisitCells(const DatasetCells& cells, DatasetCells::Reader& read, vtkIdType
     }
     const int dimension = cells.GetDimension(type);
     const CellIds ids = read(cell);
-    const bool taken = CellBlock::Takes(type, dimension, ids.size());
+    const bool taken = inBlocks && CellBlock::Takes(type, dimension, ids.size());
     if (!taken || !block.HasRoomFor(type, ids.size()))
     {
       empty();

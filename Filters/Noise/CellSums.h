@@ -118,8 +118,9 @@ public:
     return { this->ToSteps(values.X), this->ToSteps(values.Y), this->ToSteps(values.Z) };
   }
 
-  /// Appends a share of each corner of a cell of a block.
-  void AppendCorners(Shares& shares, const CellBlock& block, int cell, const CornerVectors& steps) const
+  /// Appends a share of each corner of a cell of a block; `alike`: the first one's.
+  void AppendCorners(
+    Shares& shares, const CellBlock& block, int cell, const CornerVectors& steps, bool alike) const
   {
     Share* share = shares.Extend(static_cast<std::size_t>(block.Corners));
     for (int corner = 0; corner < block.Corners; ++corner, ++share)
@@ -127,7 +128,7 @@ public:
       share->Point = block.Points[cell][corner];
       for (int axis = 0; axis < 3; ++axis)
       {
-        share->Value[axis] = GetSteps(steps.Values[corner][axis][cell]);
+        share->Value[axis] = GetSteps(steps.Values[alike ? 0 : corner][axis][cell]);
       }
     }
   }

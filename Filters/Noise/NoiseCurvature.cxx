@@ -311,7 +311,7 @@ public:
   void operator()(vtkIdType begin, vtkIdType end, PointSums::Shares& shares)
   {
     VisitCells(
-      this->Cells, this->Read, begin, end, 1, this->Block, this->PlaceOf,
+      this->Cells, this->Read, begin, end, 1, true, this->Block, this->PlaceOf,
       [this](vtkIdType cell, int type)
       { return this->Cells.GetDimension(type) > 0 && !this->Hidden.HasCell(cell); },
       [this](int index, const CellIds& ids)
@@ -342,7 +342,7 @@ private:
     {
       if (block.HasGradient[cell])
       {
-        this->Sums.AppendCorners(shares, block, cell, this->Steps);
+        this->Sums.AppendCorners(shares, block, cell, this->Steps, false);
       }
       else
       {
@@ -449,7 +449,7 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
         set(cell, GetGradient(corners, 0, corners.Ids.size(), cells.GetDimension(type)) * u);
       };
       VisitCells(
-        cells, read, begin, end, 1, block, places,
+        cells, read, begin, end, 1, true, block, places,
         [&](vtkIdType cell, int)
         {
           const bool any = !GetDirection(vectorOf(cell)).isZero(0.0);

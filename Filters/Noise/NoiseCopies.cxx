@@ -25,6 +25,39 @@ namespace
 constexpr std::size_t MostCopies = 256;
 
 using Key = std::pair<std::uint64_t, vtkIdType>;
+
+/// Tells of most hashes that no other one is the same: two bits say whether they were seen once, or again.
+class Repeats
+{
+public:
+  explicit Repeats(std::size_t count)
+  {
+    // Eight pairs or more for each.
+    std::size_t words = 1;
+    while (words < count / 4)
+    {
+      words *= 2;
+    }
+    this->Words.resize(words);
+  }
+
+  void See(std::uint64_t hash)
+  {
+    std::uint64_t& word = this->Words[this->GetWord(hash)];
+    const std::uint64_t seen = word >> GetShift(hash) & 1;
+    word |= (1 | seen << 1) << GetShift(hash);
+  }
+  bool MayBeRepeated(std::uint64_t hash) const
+  {
+    return (this->Words[this->GetWord(hash)] >> GetShift(hash) & 2) != 0;
+  }
+
+private:
+  std::size_t GetWord(std::uint64_t hash) const { return hash >> 5 & (this->Words.size() - 1); }
+  static int GetShift(std::uint64_t hash) { return 2 * static_cast<int>(hash & 31); }
+
+  std::vector<std::uint64_t> Words;
+};
 } // namespace
 
 CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hidden)
@@ -86,32 +119,29 @@ CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hid
         hashes[static_cast<std::size_t>(point)] = std::max<std::uint64_t>(hash, 1);
       }
     });
-  // Most points are alone. Eight bits or more for each tell nearly all of them, and the rest is sorted.
-  std::size_t size = 64;
-  while (size < 8 * static_cast<std::size_t>(count))
-  {
-    size *= 2;
-  }
-  std::vector<bool> once(size, false);
-  std::vector<bool> twice(size, false);
+  // Most points are alone. What tells nearly all of them is asked twice, and the rest is sorted.
+  Repeats repeats(hashes.size());
   for (const std::uint64_t hash : hashes)
   {
-    if (hash)
-    {
-      const std::size_t bit = hash & (size - 1);
-      twice[bit] = twice[bit] || once[bit];
-      once[bit] = true;
-    }
+    repeats.See(hash);
   }
   std::vector<Key> order;
   for (vtkIdType point = 0; point < count; ++point)
   {
     const std::uint64_t hash = hashes[static_cast<std::size_t>(point)];
-    if (hash && twice[hash & (size - 1)])
+    if (hash && repeats.MayBeRepeated(hash))
     {
       order.emplace_back(hash, point);
     }
   }
+  Repeats others(order.size());
+  for (const Key& key : order)
+  {
+    others.See(key.first >> 32);
+  }
+  order.erase(std::remove_if(order.begin(), order.end(),
+                [&](const Key& key) { return !others.MayBeRepeated(key.first >> 32); }),
+    order.end());
   vtkSMPTools::Sort(order.begin(), order.end());
   for (std::size_t begin = 0, end; begin < order.size(); begin = end)
   {

@@ -134,68 +134,76 @@ public:
   }
 
   /**
-   * The means. `makeGetShares()` makes, for one of the threads and with room of its own, the function
-   * getShares(begin, end, shares) that appends those of some cells. `lines`: v and -v are the same, so a sum takes
+   * The means. `makeAsk()` makes, for one of the threads and with room of its own, the function
+   * ask(begin, end, shares) that appends those of some cells. `lines`: v and -v are the same, so a sum takes
    * them to its own side, which their order decides where they are across one another.
    */
-  template <class MakeGetShares>
-  void Sum(bool lines, MakeGetShares&& makeGetShares)
+  template <class MakeAsk>
+  void Sum(bool lines, MakeAsk&& makeAsk)
   {
+    const auto threads =
+      std::max<vtkIdType>(vtkSMPTools::GetEstimatedNumberOfThreads(), 1);
     // So many that threads are worth it, so few that their shares take little memory.
     constexpr vtkIdType chunkSize = 128;
-    constexpr vtkIdType chunksPerBatch = 64;
-    constexpr vtkIdType batchSize = chunkSize * chunksPerBatch;
+    const vtkIdType chunksPerBatch = std::max<vtkIdType>(16, 4 * threads);
     // Threads that add: reading what others add costs more than more of them would save.
     vtkIdType adders = 1;
-    while (adders < 8 && adders < vtkSMPTools::GetEstimatedNumberOfThreads())
+    while (adders < std::min<vtkIdType>(threads, 8))
     {
       adders *= 2;
     }
-    // All points are cleared, the cells of each batch are asked and then added, and sums become means.
+    // While the cells of a batch are asked, those of the one before are added and those of a third one wait.
+    constexpr vtkIdType batchesAtOnce = 3;
+    std::vector<Shares> chunks(static_cast<std::size_t>(batchesAtOnce * chunksPerBatch));
+    const auto getShares = [&](vtkIdType batch, vtkIdType chunk) -> Shares&
+    { return chunks[static_cast<std::size_t>(batch % batchesAtOnce * chunksPerBatch + chunk)]; };
     const vtkIdType blocks = (this->Points + PointsPerBlock - 1) / PointsPerBlock;
-    const vtkIdType perBatch = chunksPerBatch + adders;
-    const vtkIdType finish = blocks + (this->Cells + batchSize - 1) / batchSize * perBatch;
-    std::vector<Shares> chunks(chunksPerBatch);
-    RunInOrder(
-      finish + blocks,
-      [&](vtkIdType job)
+    const vtkIdType batchSize = chunkSize * chunksPerBatch;
+    const vtkIdType batches = (this->Cells + batchSize - 1) / batchSize;
+    // All points are cleared; batch n is asked in phase 2 n + 1 and added in 2 n + 4; sums become means in the last but none.
+    const vtkIdType last = 2 * batches + 4;
+    const auto isAsked = [&](vtkIdType phase) { return phase % 2 == 1 && phase / 2 < batches; };
+    const auto isAdded = [&](vtkIdType phase)
+    { return phase % 2 == 0 && phase >= 4 && phase < last; };
+    RunInPhases(
+      last + 1,
+      [&](vtkIdType phase)
       {
-        const vtkIdType inBatch = (job - blocks) % perBatch;
-        return job < blocks ? 0
-          : job >= finish   ? finish
-                            : job - inBatch + (inBatch < chunksPerBatch ? 0 : chunksPerBatch);
+        return phase == 0 || phase == last ? blocks
+          : isAsked(phase)                 ? chunksPerBatch
+          : isAdded(phase)                 ? adders
+                                           : 0;
       },
       [&]
       {
-        return [&, getShares = makeGetShares()](vtkIdType job) mutable
+        return [&, ask = makeAsk()](vtkIdType phase, vtkIdType job) mutable
         {
-          if (job < blocks)
+          if (phase == 0)
           {
             this->Clear(job);
-            return;
           }
-          if (job >= finish)
+          else if (phase == last)
           {
-            this->Finish(job - finish);
-            return;
+            this->Finish(job);
           }
-          const vtkIdType first = (job - blocks) / perBatch * batchSize;
-          const vtkIdType chunk = (job - blocks) % perBatch;
-          if (chunk >= chunksPerBatch)
+          else if (isAsked(phase))
+          {
+            const vtkIdType batch = phase / 2;
+            const vtkIdType begin = batch * batchSize + job * chunkSize;
+            Shares& shares = getShares(batch, job);
+            shares.Clear();
+            if (begin < this->Cells)
+            {
+              ask(begin, std::min(this->Cells, begin + chunkSize), shares);
+            }
+          }
+          else
           {
             // Each adder reads all shares, in the order of the cells, and adds those of its own points.
-            for (const Shares& shares : chunks)
+            for (vtkIdType chunk = 0; chunk < chunksPerBatch; ++chunk)
             {
-              this->Add(shares, lines, adders, chunk - chunksPerBatch);
+              this->Add(getShares(phase / 2 - 2, chunk), lines, adders, job);
             }
-            return;
-          }
-          Shares& shares = chunks[static_cast<std::size_t>(chunk)];
-          shares.Clear();
-          const vtkIdType begin = first + chunk * chunkSize;
-          if (begin < this->Cells)
-          {
-            getShares(begin, std::min(this->Cells, begin + chunkSize), shares);
           }
         };
       });

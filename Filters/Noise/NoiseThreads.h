@@ -15,12 +15,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <string>
-#include <thread>
+#include <vector>
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -80,33 +81,64 @@ void WithThreads(Work&& work)
 }
 
 /**
- * Runs the jobs 0, 1, ... in threads that each take the next one, with work(job) of its own from `makeWork()`. A job
- * starts when the first `before(job)` are done: at most all before it, and no fewer than the job before it asks for.
- * For steps too short for a vtkSMPTools::For each: VTK 9.2 starts its threads anew every time. Nothing waits for a job
- * that no thread has taken, so one thread gets through as well.
+ * Runs jobsOf(0) jobs of phase 0, then those of phase 1 and so on, in threads that stay, each with work(phase, job) of its own
+ * from `makeWork()`: VTK 9.2 starts its threads anew for every vtkSMPTools::For, which for short phases takes longer than the work.
+ * A phase begins when all but the one right before it are done, so that threads hardly wait for one another; no job waits for one
+ * that no thread has taken, so a single one gets through as well.
  */
-template <typename Before, typename MakeWork>
-void RunInOrder(vtkIdType jobs, Before&& before, MakeWork&& makeWork)
+template <typename JobsOf, typename MakeWork>
+void RunInPhases(vtkIdType phases, JobsOf&& jobsOf, MakeWork&& makeWork)
 {
-  struct Counted
+  std::vector<vtkIdType> ends(static_cast<std::size_t>(phases));
+  std::vector<std::atomic<vtkIdType>> left(ends.size());
+  vtkIdType jobs = 0;
+  for (std::size_t phase = 0; phase < ends.size(); ++phase)
   {
-    std::atomic<vtkIdType>& Done;
-    ~Counted() { this->Done.fetch_add(1, std::memory_order_release); } // whatever was thrown
-  };
+    left[phase] = jobsOf(static_cast<vtkIdType>(phase));
+    ends[phase] = jobs += left[phase];
+  }
   std::atomic<vtkIdType> taken{ 0 };
-  std::atomic<vtkIdType> done{ 0 };
+  std::atomic<std::size_t> done{ 0 }; // phases, without a gap
+  std::mutex mutex;
+  std::condition_variable isDone;
+  const auto finish = [&](std::size_t phase)
+  {
+    if (--left[phase] == 0)
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      while (done < left.size() && left[done] == 0)
+      {
+        ++done;
+      }
+      isDone.notify_all();
+    }
+  };
   vtkSMPTools::For(0, std::max(vtkSMPTools::GetEstimatedNumberOfThreads(), 1), 1,
     [&](vtkIdType, vtkIdType)
     {
       auto work = makeWork();
+      std::size_t phase = 0;
       for (vtkIdType job = taken++; job < jobs; job = taken++)
       {
-        while (done.load(std::memory_order_acquire) < before(job))
+        while (job >= ends[phase])
         {
-          std::this_thread::yield();
+          ++phase;
         }
-        const Counted counted{ done };
-        work(job);
+        if (done + 1 < phase)
+        {
+          std::unique_lock<std::mutex> lock(mutex);
+          isDone.wait(lock, [&] { return done + 1 >= phase; });
+        }
+        try
+        {
+          work(static_cast<vtkIdType>(phase), job - (phase > 0 ? ends[phase - 1] : 0));
+        }
+        catch (...)
+        {
+          finish(phase);
+          throw;
+        }
+        finish(phase);
       }
     });
 }

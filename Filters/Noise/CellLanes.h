@@ -115,8 +115,9 @@ struct CellBlock
   }
 
   /**
-   * Of the cells from this one on: from one corner of a simplex to the others; of a quadrangle and a hexahedron the means of
-   * the sides along each axis.
+   * Differences of the vectors at corners, of the cells from this one on: from one corner of a simplex to the others;
+   * of a quadrangle and a hexahedron the means of the sides along each axis, which with parallel sides is what fits
+   * them best.
    */
   void GetAxes(const CornerVectors& vectors, int cell, LaneVector* axes) const
   {
@@ -151,12 +152,14 @@ struct CellBlock
 };
 
 /**
- * Goes through every `step`th of the cells from `begin` on, which `isThere(cell, type)`, in their order. Those that a block takes are added
- * to `block`, with add(index, ids), and worked on by work() when there is no room for more; others go to other(cell, type, ids).
+ * Goes through every `step`th of the cells from `begin` on of which isThere(cell, type), in their order. With
+ * `inBlocks` those that a block takes are added to `block`, with add(index, ids), and worked on by work() when there
+ * is no room for more; others go to other(cell, type, ids).
  */
 template <class PlaceOf, class IsThere, class Add, class Work, class Other>
-void VisitCells(const DatasetCells& cells, DatasetCells::Reader& read, vtkIdType begin, vtkIdType end, vtkIdType step,
-  bool inBlocks, CellBlock& block, PlaceOf&& placeOf, IsThere&& isThere, Add&& add, Work&& work, Other&& other)
+void VisitCells(const DatasetCells& cells, DatasetCells::Reader& read, vtkIdType begin, vtkIdType end,
+  vtkIdType step, bool inBlocks, CellBlock& block, PlaceOf&& placeOf, IsThere&& isThere, Add&& add,
+  Work&& work, Other&& other)
 {
   const auto empty = [&]
   {

@@ -160,7 +160,7 @@ public:
     const vtkIdType blocks = (this->Points + PointsPerBlock - 1) / PointsPerBlock;
     const vtkIdType batchSize = chunkSize * chunksPerBatch;
     const vtkIdType batches = (this->Cells + batchSize - 1) / batchSize;
-    // All points are cleared; batch n is asked in phase 2 n + 1 and added in 2 n + 4; sums become means in the last but none.
+    // All points are cleared, batch n is asked in phase 2 n + 1 and added in 2 n + 4, sums become means in the last.
     const vtkIdType last = 2 * batches + 4;
     const auto isAsked = [&](vtkIdType phase) { return phase % 2 == 1 && phase / 2 < batches; };
     const auto isAdded = [&](vtkIdType phase)
@@ -202,7 +202,8 @@ public:
             // Each adder reads all shares, in the order of the cells, and adds those of its own points.
             for (vtkIdType chunk = 0; chunk < chunksPerBatch; ++chunk)
             {
-              this->Add(getShares(phase / 2 - 2, chunk), lines, adders, job);
+              const Shares& shares = getShares(phase / 2 - 2, chunk);
+              lines ? this->Add<true>(shares, adders, job) : this->Add<false>(shares, adders, job);
             }
           }
         };
@@ -258,18 +259,20 @@ private:
       });
   }
 
-  void Add(const Shares& shares, bool lines, vtkIdType adders, vtkIdType adder)
+  template <bool Lines>
+  void Add(const Shares& shares, vtkIdType adders, vtkIdType adder)
   {
     for (const Share& share : shares)
     {
       if (((share.Point >> BitsOfTurn) & (adders - 1)) == adder)
       {
-        this->Add(share, lines);
+        this->Add<Lines>(share);
       }
     }
   }
 
-  void Add(const Share& share, bool lines)
+  template <bool Lines>
+  void Add(const Share& share)
   {
     std::int32_t* sum = this->Sums + 3 * share.Point;
     std::uint16_t& count = this->Counts[static_cast<std::size_t>(share.Point)];
@@ -279,17 +282,17 @@ private:
     }
     const auto product = [&](int axis)
     { return static_cast<double>(sum[axis]) * static_cast<double>(share.Value[axis]); };
-    const bool turn = lines && product(0) + product(1) + product(2) < 0.0;
-    std::int64_t total[3];
+    const bool turn = Lines && product(0) + product(1) + product(2) < 0.0;
+    std::int64_t totals[3];
     for (int axis = 0; axis < 3; ++axis)
     {
       const std::int64_t value = share.Value[axis];
-      total[axis] = sum[axis] + (turn ? -value : value);
+      totals[axis] = sum[axis] + (turn ? -value : value);
     }
-    const auto fits = [&](int axis) { return std::abs(total[axis]) <= INT32_MAX; };
+    const auto fits = [&](int axis) { return std::abs(totals[axis]) <= INT32_MAX; };
     if (fits(0) && fits(1) && fits(2)) // else the mean of those before is kept
     {
-      std::copy(total, total + 3, sum);
+      std::copy(totals, totals + 3, sum);
       ++count;
     }
   }

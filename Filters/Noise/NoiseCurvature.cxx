@@ -212,8 +212,8 @@ struct GradientBlock : CellBlock
   bool HasGradient[CornerVectors::MostCells];
 
   /**
-   * Vectors at corners become those on the side of the first of `sides`, which have gradients; `unit`: of length 1. One of
-   * length 0 has none.
+   * Vectors at corners become those on the side of the first of `sides`, and their gradients are found; `unit`: they
+   * become as long as 1. A cell with one of length 0 has no gradient.
    */
   void FindGradients(const CornerVectors& sides, bool unit)
   {

@@ -340,7 +340,8 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
     [&]
     {
       return [&, read = DatasetCells::Reader(cells), block = CellBlock(), steps = CornerVectors(),
-               hasNormal = std::array<bool, CornerVectors::MostCells>()](vtkIdType begin, vtkIdType end, PointSums::Shares& shares) mutable
+               hasNormal = std::array<bool, CornerVectors::MostCells>()](
+               vtkIdType begin, vtkIdType end, PointSums::Shares& shares) mutable
       {
         const auto appendBlock = [&]
         {
@@ -953,8 +954,8 @@ void SampleSpacing::Add(
           {
             Part& part = parts[static_cast<std::size_t>(i)];
             VisitCells(
-              allCells, read, i * partSize, std::min(cells, (i + 1) * partSize), step, slab < 0, block, placeOf, isThere,
-              [](int, const CellIds&) {},
+              allCells, read, i * partSize, std::min(cells, (i + 1) * partSize), step, slab < 0, block,
+              placeOf, isThere, [](int, const CellIds&) {},
               [&]
               {
                 for (int cell = 0; cell < block.Count; cell += LaneCount)

@@ -81,10 +81,10 @@ void WithThreads(Work&& work)
 }
 
 /**
- * Runs jobsOf(0) jobs of phase 0, then those of phase 1 and so on, in threads that stay, each with work(phase, job) of its own
- * from `makeWork()`: VTK 9.2 starts its threads anew for every vtkSMPTools::For, which for short phases takes longer than the work.
- * A phase begins when all but the one right before it are done, so that threads hardly wait for one another; no job waits for one
- * that no thread has taken, so a single one gets through as well.
+ * Runs jobsOf(0) jobs of phase 0, then those of phase 1 and so on, in threads that stay, each with work(phase, job) of
+ * its own from `makeWork()`: VTK 9.2 starts its threads anew for every vtkSMPTools::For, which for short phases takes
+ * longer than the work. A phase begins when all but the one right before it are done, so that threads hardly wait for
+ * one another. No job waits for one that no thread has taken, so a single one gets through as well.
  */
 template <typename JobsOf, typename MakeWork>
 void RunInPhases(vtkIdType phases, JobsOf&& jobsOf, MakeWork&& makeWork)

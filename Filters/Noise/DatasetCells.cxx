@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 
 namespace noise
 {
@@ -66,7 +67,12 @@ DatasetCells::DatasetCells(vtkDataSet* dataset)
   {
     this->Types = grid->GetCellTypesArray()->GetPointer(0);
     this->SetCells(grid->GetCells());
-    std::for_each(this->Types, this->Types + this->Number, [&](int type) { present.at(static_cast<std::size_t>(type)) = true; });
+    // Cells of one type, as in most grids, are compared with their neighbours, which takes the least.
+    present.at(this->Types[0]) = true;
+    if (std::memcmp(this->Types, this->Types + 1, static_cast<std::size_t>(this->Number - 1)) != 0)
+    {
+      std::for_each(this->Types, this->Types + this->Number, [&](std::size_t type) { present.at(type) = true; });
+    }
   }
   else if (auto* surface = vtkPolyData::SafeDownCast(dataset))
   {

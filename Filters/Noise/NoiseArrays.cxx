@@ -279,6 +279,24 @@ private:
   ShapeArrays Arrays;
 };
 
+/// Floats as doubles, three each.
+class FloatPositionReader : public steerable::TupleReader<double>
+{
+public:
+  explicit FloatPositionReader(const float* values)
+    : Values(values)
+  {
+  }
+  const double* Read(std::size_t first, std::size_t count, double* scratch) const override
+  {
+    std::copy_n(this->Values + 3 * first, 3 * count, scratch);
+    return scratch;
+  }
+
+private:
+  const float* Values;
+};
+
 class PositionReader : public steerable::TupleReader<double>
 {
 public:
@@ -358,6 +376,10 @@ std::unique_ptr<steerable::TupleReader<double>> MakePositionReader(vtkDataArray*
   if (auto* doubles = vtkDoubleArray::FastDownCast(array))
   {
     return std::make_unique<steerable::ContiguousReader<double, 3>>(doubles->GetPointer(0));
+  }
+  if (auto* floats = vtkFloatArray::FastDownCast(array))
+  {
+    return std::make_unique<FloatPositionReader>(floats->GetPointer(0));
   }
   return std::make_unique<PositionReader>(array);
 }

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <utility>
 
 namespace noise
@@ -25,6 +24,61 @@ namespace
 constexpr std::size_t MostCopies = 256;
 
 using Key = std::pair<std::uint64_t, vtkIdType>;
+
+/// Of the whole numbers nearest to these coordinates; not 0.
+std::uint64_t HashOf(const Eigen::Vector3d& place)
+{
+  std::uint64_t hash = 0x9E3779B97F4A7C15u;
+  for (const double value : place)
+  {
+    hash = (hash ^ static_cast<std::uint64_t>(LowestBits(value + LeavesWholes))) * 0xBF58476D1CE4E5B9u;
+    hash ^= hash >> 31;
+  }
+  return std::max<std::uint64_t>(hash, 1);
+}
+
+/// Tells of most hashes that no other one is the same: two bits say whether they were seen once, or again.
+class Repeats
+{
+public:
+  explicit Repeats(std::size_t count)
+  {
+    // Eight pairs or more for each.
+    std::size_t words = 1;
+    while (words < count / 4)
+    {
+      words *= 2;
+    }
+    this->Words.resize(words);
+  }
+
+  void See(std::uint64_t hash)
+  {
+    std::uint64_t& word = this->Words[this->GetWord(hash)];
+    const std::uint64_t seen = word >> GetShift(hash) & 1;
+    word |= (1 | seen << 1) << GetShift(hash);
+  }
+  /// What another one of the same size has seen.
+  void See(const Repeats& other)
+  {
+    constexpr std::uint64_t once = 0x5555555555555555u;
+    for (std::size_t i = 0; i < this->Words.size(); ++i)
+    {
+      const std::uint64_t both = this->Words[i] & other.Words[i] & once;
+      this->Words[i] |= other.Words[i] | both << 1;
+    }
+  }
+  bool MayBeRepeated(std::uint64_t hash) const
+  {
+    return (this->Words[this->GetWord(hash)] >> GetShift(hash) & 2) != 0;
+  }
+
+private:
+  std::size_t GetWord(std::uint64_t hash) const { return hash >> 5 & (this->Words.size() - 1); }
+  static int GetShift(std::uint64_t hash) { return 2 * static_cast<int>(hash & 31); }
+
+  std::vector<std::uint64_t> Words;
+};
 } // namespace
 
 CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hidden)
@@ -36,29 +90,27 @@ CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hid
   constexpr vtkIdType chunkSize = 65536;
   const vtkIdType chunks = (count + chunkSize - 1) / chunkSize;
   std::vector<double> largestOf(static_cast<std::size_t>(chunks), 0.0);
-  const auto forEachPoint = [&](auto&& visit)
+  const auto forEachChunk = [&](auto&& visit)
   {
     vtkSMPTools::For(0, chunks, 1,
       [&](vtkIdType begin, vtkIdType end)
       {
         for (vtkIdType chunk = begin; chunk < end; ++chunk)
         {
-          const vtkIdType last = std::min(count, (chunk + 1) * chunkSize);
-          for (vtkIdType point = chunk * chunkSize; point < last; ++point)
-          {
-            visit(chunk, point, places(point));
-          }
+          visit(chunk, chunk * chunkSize, std::min(count, (chunk + 1) * chunkSize));
         }
       });
   };
-  forEachPoint(
-    [&](vtkIdType chunk, vtkIdType point, const Eigen::Vector3d& place)
+  forEachChunk(
+    [&](vtkIdType chunk, vtkIdType begin, vtkIdType end)
     {
-      if (isThere(point, place))
+      double largest = 0.0;
+      for (vtkIdType point = begin; point < end; ++point)
       {
-        double& largest = largestOf[static_cast<std::size_t>(chunk)];
-        largest = std::max(largest, place.cwiseAbs().maxCoeff());
+        const Eigen::Vector3d place = places(point);
+        largest = isThere(point, place) ? std::max(largest, place.cwiseAbs().maxCoeff()) : largest;
       }
+      largestOf[static_cast<std::size_t>(chunk)] = largest;
     });
   const double largest = count > 0 ? *std::max_element(largestOf.begin(), largestOf.end()) : 0.0;
   this->Starts.push_back(0);
@@ -66,52 +118,59 @@ CoincidentPoints::CoincidentPoints(vtkDataSet* dataset, const HiddenSamples& hid
   {
     return;
   }
-  // 0: no place.
-  const double unit = std::ldexp(1.0, std::ilogb(largest) - 22);
-  std::vector<std::uint64_t> hashes(static_cast<std::size_t>(count), 0);
-  forEachPoint(
-    [&](vtkIdType, vtkIdType point, const Eigen::Vector3d& place)
+  // Most points are alone. What tells nearly all of them is asked twice, and the rest is sorted.
+  const double unitsPerLength = std::ldexp(1.0, 22 - std::ilogb(largest));
+  std::vector<std::uint64_t> hashes(static_cast<std::size_t>(count), 0); // 0: no place
+  forEachChunk(
+    [&](vtkIdType, vtkIdType begin, vtkIdType end)
     {
-      if (isThere(point, place))
+      for (vtkIdType point = begin; point < end; ++point)
       {
-        std::uint64_t hash = 0x9E3779B97F4A7C15u;
-        for (const double value : place)
+        const Eigen::Vector3d place = places(point);
+        if (isThere(point, place))
         {
-          const double units = value / unit + LeavesWholes; // in its lowest bits
-          std::uint64_t bits;
-          std::memcpy(&bits, &units, sizeof(bits));
-          hash = (hash ^ bits) * 0xBF58476D1CE4E5B9u;
-          hash ^= hash >> 31;
+          hashes[static_cast<std::size_t>(point)] = HashOf(place * unitsPerLength);
         }
-        hashes[static_cast<std::size_t>(point)] = std::max<std::uint64_t>(hash, 1);
       }
     });
-  // Most points are alone. Eight bits or more for each tell nearly all of them, and the rest is sorted.
-  std::size_t size = 64;
-  while (size < 8 * static_cast<std::size_t>(count))
-  {
-    size *= 2;
-  }
-  std::vector<bool> once(size, false);
-  std::vector<bool> twice(size, false);
-  for (const std::uint64_t hash : hashes)
-  {
-    if (hash)
+  // Two, for two threads at once; more would take more memory than what comes after.
+  std::vector<Repeats> repeats(2, Repeats(hashes.size()));
+  vtkSMPTools::For(0, 2, 1,
+    [&](vtkIdType begin, vtkIdType end)
     {
-      const std::size_t bit = hash & (size - 1);
-      twice[bit] = twice[bit] || once[bit];
-      once[bit] = true;
-    }
-  }
+      for (vtkIdType half = begin; half < end; ++half)
+      {
+        std::for_each(hashes.begin() + count * half / 2, hashes.begin() + count * (half + 1) / 2,
+          [&](std::uint64_t hash) { repeats[static_cast<std::size_t>(half)].See(hash); });
+      }
+    });
+  repeats[0].See(repeats[1]);
+  repeats.resize(1, Repeats(0));
+  forEachChunk(
+    [&](vtkIdType, vtkIdType begin, vtkIdType end)
+    {
+      for (vtkIdType point = begin; point < end; ++point)
+      {
+        std::uint64_t& hash = hashes[static_cast<std::size_t>(point)];
+        hash = repeats[0].MayBeRepeated(hash) ? hash : 0;
+      }
+    });
   std::vector<Key> order;
   for (vtkIdType point = 0; point < count; ++point)
   {
-    const std::uint64_t hash = hashes[static_cast<std::size_t>(point)];
-    if (hash && twice[hash & (size - 1)])
+    if (const std::uint64_t hash = hashes[static_cast<std::size_t>(point)])
     {
       order.emplace_back(hash, point);
     }
   }
+  Repeats others(order.size());
+  for (const Key& key : order)
+  {
+    others.See(key.first >> 32);
+  }
+  order.erase(std::remove_if(order.begin(), order.end(),
+                [&](const Key& key) { return !others.MayBeRepeated(key.first >> 32); }),
+    order.end());
   vtkSMPTools::Sort(order.begin(), order.end());
   for (std::size_t begin = 0, end; begin < order.size(); begin = end)
   {

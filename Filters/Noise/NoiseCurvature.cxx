@@ -39,12 +39,35 @@ struct CellPoints
   }
 };
 
-/// Unit vector, or 0 if there is none.
-Vector3d GetDirection(const steerable::TupleReader<float>& vectors, vtkIdType sample)
+/// Vectors of samples, where it can be without a virtual call for each.
+class VectorPlaces
 {
-  float scratch[3];
-  const float* vector = vectors.Read(static_cast<std::size_t>(sample), 1, scratch);
-  const Vector3d v = Eigen::Map<const Eigen::Vector3f>(vector).cast<double>();
+public:
+  explicit VectorPlaces(const steerable::TupleReader<float>& reader)
+    : Reader(reader)
+  {
+    if (dynamic_cast<const steerable::ContiguousReader<float, 3>*>(&reader))
+    {
+      this->Floats = reader.Read(0, 0, nullptr);
+    }
+  }
+
+  Vector3d operator()(vtkIdType sample) const
+  {
+    float scratch[3];
+    const float* vector = this->Floats ? this->Floats + 3 * sample
+                                       : this->Reader.Read(static_cast<std::size_t>(sample), 1, scratch);
+    return Eigen::Map<const Eigen::Vector3f>(vector).cast<double>();
+  }
+
+private:
+  const steerable::TupleReader<float>& Reader;
+  const float* Floats = nullptr;
+};
+
+/// Unit vector, or 0 if there is none.
+Vector3d GetDirection(const Vector3d& v)
+{
   const double length = v.norm();
   return std::isfinite(length) && length > 0.0 ? Vector3d(v * (1.0 / length)) : Vector3d::Zero();
 }
@@ -119,106 +142,10 @@ private:
   Matrix3d Products = Matrix3d::Zero();
 };
 
-/// Differences of place and direction between the two ends of a cell along each of its axes.
-struct CellAxes
-{
-  Vector3d Places[3];
-  Vector3d Directions[3];
-};
-
-/**
- * Of `count` points of a cell of this type from `first` on: from one corner of a simplex to the others; of a quadrangle and a
- * hexahedron the means of the sides along each axis, which with parallel sides is what fits them best. False for others.
- */
-bool GetAxes(const CellPoints& cell, std::size_t first, std::size_t count, int type, int dimension,
-  CellAxes& axes)
-{
-  const auto set = [&](auto&& difference)
-  {
-    difference(cell.Places.data() + first, axes.Places);
-    difference(cell.Directions.data() + first, axes.Directions);
-    return true;
-  };
-  if (dimension > 1 && count == static_cast<std::size_t>(dimension) + 1)
-  {
-    return set(
-      [&](const Vector3d* at, Vector3d* axis)
-      {
-        for (int i = 0; i < dimension; ++i)
-        {
-          axis[i] = at[i + 1] - at[0];
-        }
-      });
-  }
-  // The corners of pixels and voxels are in the order of an image, those of others go round.
-  const bool image = type == VTK_PIXEL || type == VTK_VOXEL;
-  if ((type == VTK_QUAD || type == VTK_PIXEL) && count == 4)
-  {
-    return set(
-      [&](const Vector3d* at, Vector3d* axis)
-      {
-        const Vector3d diagonals[2] = { at[2 + image] - at[0], at[1] - at[3 - image] };
-        axis[0] = 0.5 * (diagonals[0] + diagonals[1]);
-        axis[1] = 0.5 * (diagonals[0] - diagonals[1]);
-      });
-  }
-  if ((type == VTK_HEXAHEDRON || type == VTK_VOXEL) && count == 8)
-  {
-    return set(
-      [&](const Vector3d* at, Vector3d* axis)
-      {
-        const Vector3d diagonals[4] = { at[6 + image] - at[0], at[7 - image] - at[1],
-          at[5] - at[3 - image], at[4] - at[2 + image] };
-        const Vector3d even = diagonals[0] - diagonals[3];
-        const Vector3d odd = diagonals[2] - diagonals[1];
-        axis[0] = 0.25 * (even + odd);
-        axis[1] = 0.25 * (even - odd);
-        axis[2] = 0.25 * (diagonals[0] + diagonals[1] + diagonals[2] + diagonals[3]);
-      });
-  }
-  return false;
-}
-
-/// The gradient that has these differences. False where they are too close to a line or a plane.
-bool GetGradientOfAxes(const CellAxes& axes, int dimension, Matrix3d& gradient)
-{
-  // As GradientFit: a millionth of the longest is still a distance.
-  constexpr double thinnest = 1e-12;
-  const auto& [a, b, c] = axes.Places;
-  const auto& [du, dv, dw] = axes.Directions;
-  const Vector3d normal = a.cross(b);
-  if (dimension == 2)
-  {
-    const double squared = normal.squaredNorm();
-    const double longest = std::max(a.squaredNorm(), b.squaredNorm());
-    if (!(squared > thinnest * longest * longest) || !std::isfinite(squared))
-    {
-      return false;
-    }
-    // The gradients of the two coordinates that go from 0 to 1 along one axis.
-    gradient = (du * b.cross(normal).transpose() + dv * normal.cross(a).transpose()) / squared;
-    return true;
-  }
-  const double volume = normal.dot(c);
-  const double longest = std::max({ a.squaredNorm(), b.squaredNorm(), c.squaredNorm() });
-  if (!(volume * volume > thinnest * longest * longest * longest) || !std::isfinite(volume * volume))
-  {
-    return false;
-  }
-  gradient = (du * b.cross(c).transpose() + dv * c.cross(a).transpose() + dw * normal.transpose()) / volume;
-  return true;
-}
-
-/// Gradient of the points [first, first + count) of a cell of this type.
+/// Gradient of the points [first, first + count) of a cell of this dimension.
 Matrix3d GetGradient(
-  const CellPoints& cell, std::size_t first, std::size_t count, int type, int dimension)
+  const CellPoints& cell, std::size_t first, std::size_t count, int dimension)
 {
-  CellAxes axes;
-  Matrix3d gradient;
-  if (GetAxes(cell, first, count, type, dimension, axes) && GetGradientOfAxes(axes, dimension, gradient))
-  {
-    return gradient;
-  }
   Vector3d meanPlace = Vector3d::Zero();
   Vector3d meanDirection = Vector3d::Zero();
   for (std::size_t i = first; i < first + count; ++i)
@@ -275,6 +202,190 @@ void SetPoints(const CellIds& ids, const PointPlaces& places, Vector3d side, boo
   cell.Resize(count);
 }
 
+/// Cells side by side, with the directions at their corners and the gradients of these.
+struct GradientBlock : CellBlock
+{
+  CornerVectors Directions;
+  /// Of some cells: the axes of the direction, each a vector.
+  LaneVector Gradients[CornerVectors::MostCells / LaneCount][3];
+  /// Not where corners lack a place or a direction, nor where cells are too close to a line or a plane.
+  bool HasGradient[CornerVectors::MostCells];
+
+  /**
+   * Vectors at corners become those on the side of the first of `sides`, and their gradients are found; `unit`: they
+   * become as long as 1. A cell with one of length 0 has no gradient.
+   */
+  void FindGradients(const CornerVectors& sides, bool unit)
+  {
+    for (int cell = 0; cell < this->Count; cell += LaneCount)
+    {
+      for (int corner = 0; corner < this->Corners; ++corner)
+      {
+        const LaneVector v = this->Directions.GetLanes(corner, cell);
+        const Lanes squared = v.Dot(v);
+        const Lanes scale = unit ? Lanes(squared.sqrt().inverse()) : Lanes(squared / squared);
+        const Lanes cosine = v.Dot(sides.GetLanes(0, cell));
+        this->Directions.SetLanes(corner, cell, v * (cosine < 0.0).select(-scale, scale));
+      }
+      LaneVector along[3];
+      LaneVector changes[3];
+      this->GetAxes(this->Places, cell, along);
+      this->GetAxes(this->Directions, cell, changes);
+      this->SetGradients(cell, along, changes);
+    }
+  }
+
+  /// The change along `u`, of these cells.
+  LaneVector Along(const LaneVector& u, int cell) const
+  {
+    const LaneVector(&gradient)[3] = this->Gradients[cell / LaneCount];
+    return { gradient[0].Dot(u), gradient[1].Dot(u), gradient[2].Dot(u) };
+  }
+
+private:
+  /// The gradient that has these differences along the axes of cells.
+  void SetGradients(int cell, const LaneVector (&along)[3], const LaneVector (&changes)[3])
+  {
+    // As GradientFit: a millionth of the longest is still a distance.
+    constexpr double thinnest = 1e-12;
+    const auto& [a, b, c] = along;
+    const LaneVector normal = a.Cross(b);
+    // The gradients of the coordinates that go from 0 to 1 along one axis.
+    LaneVector slopes[3];
+    Lanes thickness;
+    Lanes longest = a.Dot(a).max(b.Dot(b));
+    if (this->Dimension == 2)
+    {
+      const Lanes squared = normal.Dot(normal);
+      const Lanes scale = squared.inverse();
+      slopes[0] = b.Cross(normal) * scale;
+      slopes[1] = normal.Cross(a) * scale;
+      thickness = squared;
+      longest = longest * longest;
+    }
+    else
+    {
+      const Lanes volume = normal.Dot(c);
+      const Lanes scale = volume.inverse();
+      slopes[0] = b.Cross(c) * scale;
+      slopes[1] = c.Cross(a) * scale;
+      slopes[2] = normal * scale;
+      thickness = volume * volume;
+      longest = longest.max(c.Dot(c));
+      longest = longest * longest * longest;
+    }
+    LaneVector(&gradient)[3] = this->Gradients[cell / LaneCount];
+    const auto set = [&](LaneVector& row, auto&& of)
+    {
+      row = slopes[0] * of(changes[0]) + slopes[1] * of(changes[1]);
+      row = this->Dimension == 2 ? row : row + slopes[2] * of(changes[2]);
+    };
+    set(gradient[0], [](const LaneVector& change) { return change.X; });
+    set(gradient[1], [](const LaneVector& change) { return change.Y; });
+    set(gradient[2], [](const LaneVector& change) { return change.Z; });
+    const LaneVector sum = gradient[0] + gradient[1] + gradient[2];
+    const Lanes finite = sum.X + sum.Y + sum.Z + thickness;
+    for (int lane = 0; lane < LaneCount; ++lane)
+    {
+      this->HasGradient[cell + lane] =
+        thickness[lane] > thinnest * longest[lane] && std::isfinite(finite[lane]);
+    }
+  }
+};
+
+/// What cells tell about the curvature at their points; one for each thread.
+class CurvatureShares
+{
+public:
+  CurvatureShares(const DatasetCells& cells, const PointPlaces& placeOf, const VectorPlaces& vectorOf,
+    const HiddenSamples& hidden, const PointSums& sums)
+    : Cells(cells)
+    , Read(cells)
+    , PlaceOf(placeOf)
+    , VectorOf(vectorOf)
+    , Hidden(hidden)
+    , Sums(sums)
+  {
+  }
+
+  void operator()(vtkIdType begin, vtkIdType end, PointSums::Shares& shares)
+  {
+    VisitCells(
+      this->Cells, this->Read, begin, end, 1, true, this->Block, this->PlaceOf,
+      [this](vtkIdType cell, int type)
+      { return this->Cells.GetDimension(type) > 0 && !this->Hidden.HasCell(cell); },
+      [this](int index, const CellIds& ids)
+      {
+        for (int corner = 0; corner < this->Block.Corners; ++corner)
+        {
+          this->Block.Directions.Set(corner, index, this->VectorOf(ids[corner]));
+        }
+      },
+      [&] { this->AppendBlock(shares); },
+      [&](vtkIdType, int type, const CellIds& ids) { this->AppendCell(ids, type, shares); });
+  }
+
+private:
+  void AppendBlock(PointSums::Shares& shares)
+  {
+    GradientBlock& block = this->Block;
+    block.FindGradients(block.Directions, true);
+    for (int cell = 0; cell < block.Count; cell += LaneCount)
+    {
+      for (int corner = 0; corner < block.Corners; ++corner)
+      {
+        const LaneVector u = block.Directions.GetLanes(corner, cell);
+        this->Steps.SetLanes(corner, cell, this->Sums.ToSteps(block.Along(u, cell)));
+      }
+    }
+    for (int cell = 0; cell < block.Count; ++cell)
+    {
+      if (block.HasGradient[cell])
+      {
+        this->Sums.AppendCorners(shares, block, cell, this->Steps, false);
+      }
+      else
+      {
+        this->AppendCell(block.GetIds(cell), block.Type, shares);
+      }
+    }
+  }
+
+  void AppendCell(const CellIds& ids, int type, PointSums::Shares& shares)
+  {
+    const std::size_t part = GetPartSize(type);
+    CellPoints& cell = this->Cell;
+    SetPoints(ids, this->PlaceOf, Vector3d::Zero(), part > 0, cell,
+      [&](vtkIdType point) { return GetDirection(this->VectorOf(point)); });
+    const std::size_t size = part > 0 ? part : std::max<std::size_t>(cell.Ids.size(), 2);
+    for (std::size_t first = 0; first + size <= cell.Ids.size(); ++first)
+    {
+      const auto begin = cell.Directions.begin() + static_cast<std::ptrdiff_t>(first);
+      if (part > 0 &&
+        std::any_of(begin, begin + static_cast<std::ptrdiff_t>(size),
+          [](const Vector3d& u) { return u.isZero(0.0); }))
+      {
+        continue;
+      }
+      const Matrix3d gradient = GetGradient(cell, first, size, this->Cells.GetDimension(type));
+      for (std::size_t i = first; i < first + size; ++i)
+      {
+        this->Sums.Append(shares, cell.Ids[i], gradient * cell.Directions[i]);
+      }
+    }
+  }
+
+  const DatasetCells& Cells;
+  DatasetCells::Reader Read;
+  const PointPlaces& PlaceOf;
+  const VectorPlaces& VectorOf;
+  const HiddenSamples& Hidden;
+  const PointSums& Sums;
+  GradientBlock Block;
+  CornerVectors Steps;
+  CellPoints Cell;
+};
+
 /// Of points, from the cells around them.
 vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
   vtkDataSet* dataset, const steerable::TupleReader<float>& vectors, const HiddenSamples& hidden,
@@ -282,43 +393,11 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfPoints(
 {
   const DatasetCells cells(dataset);
   const PointPlaces places(dataset);
+  const VectorPlaces vectorOf(vectors);
   auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfPoints());
   // The noise takes bends up to 1 / cellSize: room for 127 cells of such, and finer than it sees.
   PointSums sums(dataset, curvature, cellSize * (1 << 24));
-  sums.AddCells(false,
-    [&]
-    {
-      return [&, read = DatasetCells::Reader(cells), cell = CellPoints()](
-               vtkIdType id, PointSums::Shares& shares) mutable
-      {
-        const int type = cells.GetType(id);
-        const int dimension = cells.GetDimension(type);
-        if (dimension == 0 || hidden.HasCell(id))
-        {
-          return;
-        }
-        const std::size_t part = GetPartSize(type);
-        SetPoints(read(id), places, Vector3d::Zero(), part > 0, cell,
-          [&](vtkIdType point) { return GetDirection(vectors, point); });
-        const std::size_t size = part > 0 ? part : std::max<std::size_t>(cell.Ids.size(), 2);
-        for (std::size_t first = 0; first + size <= cell.Ids.size(); ++first)
-        {
-          const auto begin = cell.Directions.begin() + static_cast<std::ptrdiff_t>(first);
-          if (part > 0 &&
-            std::any_of(begin, begin + static_cast<std::ptrdiff_t>(size),
-              [](const Vector3d& u) { return u.isZero(0.0); }))
-          {
-            continue;
-          }
-          const Matrix3d gradient = GetGradient(cell, first, size, type, dimension);
-          for (std::size_t i = first; i < first + size; ++i)
-          {
-            sums.Append(shares, cell.Ids[i], gradient * cell.Directions[i]);
-          }
-        }
-      };
-    });
-  sums.Finish();
+  sums.Sum(false, [&] { return CurvatureShares(cells, places, vectorOf, hidden, sums); });
   copies.Share(curvature, cellSize * (1 << 24), false, 0.0);
   return curvature;
 }
@@ -330,47 +409,78 @@ vtkSmartPointer<vtkFloatArray> CurvatureOfCells(
 {
   const DatasetCells cells(dataset);
   const PointPlaces places(dataset);
+  const VectorPlaces vectorOf(vectors);
   auto points = NewOutputArray("Directions", 3, dataset->GetNumberOfPoints());
   PointSums sums(dataset, points, DirectionSteps);
-  sums.AddCells(true,
+  sums.Sum(true,
     [&]
     {
-      return [&, read = DatasetCells::Reader(cells)](vtkIdType id, PointSums::Shares& shares) mutable
+      return [&, read = DatasetCells::Reader(cells)](
+               vtkIdType begin, vtkIdType end, PointSums::Shares& shares) mutable
       {
-        const Vector3d u = GetDirection(vectors, id);
-        if (!u.isZero(0.0))
+        for (vtkIdType id = begin; id < end; ++id)
         {
-          for (const vtkIdType point : read(id))
+          const Vector3d u = GetDirection(vectorOf(id));
+          if (!u.isZero(0.0))
           {
-            sums.Append(shares, point, u);
+            sums.Append(shares, read(id), u);
           }
         }
       };
     });
-  sums.Finish();
   copies.Share(points, DirectionSteps, true, 0.0);
   auto curvature = NewOutputArray("Curvature", 3, dataset->GetNumberOfCells());
+  const auto directionOf = [&](vtkIdType point) -> Vector3d
+  { return Eigen::Map<const Eigen::Vector3f>(points->GetPointer(3 * point)).cast<double>(); };
   vtkSMPTools::For(0, dataset->GetNumberOfCells(), 1024,
     [&](vtkIdType begin, vtkIdType end)
     {
       DatasetCells::Reader read(cells);
-      CellPoints cell;
-      for (vtkIdType id = begin; id < end; ++id)
+      GradientBlock block;
+      CornerVectors own;
+      CornerVectors results;
+      CellPoints corners;
+      const auto set = [&](vtkIdType cell, const Vector3d& result)
+      { Eigen::Map<Eigen::Vector3f>(curvature->GetPointer(3 * cell)) = result.cast<float>(); };
+      const auto setCell = [&](vtkIdType cell, int type, const CellIds& ids)
       {
-        const Vector3d u = GetDirection(vectors, id);
-        Vector3d result = Vector3d::Zero();
-        if (!u.isZero(0.0))
+        const Vector3d u = GetDirection(vectorOf(cell));
+        SetPoints(ids, places, u, false, corners, directionOf);
+        set(cell, GetGradient(corners, 0, corners.Ids.size(), cells.GetDimension(type)) * u);
+      };
+      VisitCells(
+        cells, read, begin, end, 1, true, block, places,
+        [&](vtkIdType cell, int)
         {
-          SetPoints(read(id), places, u, false, cell,
-            [&](vtkIdType point) -> Vector3d {
-              return Eigen::Map<const Eigen::Vector3f>(points->GetPointer(3 * point))
-                .cast<double>();
-            });
-          const int type = cells.GetType(id);
-          result = GetGradient(cell, 0, cell.Ids.size(), type, cells.GetDimension(type)) * u;
-        }
-        Eigen::Map<Eigen::Vector3f>(curvature->GetPointer(3 * id)) = result.cast<float>();
-      }
+          const bool any = !GetDirection(vectorOf(cell)).isZero(0.0);
+          if (!any)
+          {
+            set(cell, Vector3d::Zero());
+          }
+          return any;
+        },
+        [&](int index, const CellIds& ids)
+        {
+          own.Set(0, index, GetDirection(vectorOf(block.Cells[index])));
+          for (int corner = 0; corner < block.Corners; ++corner)
+          {
+            block.Directions.Set(corner, index, directionOf(ids[corner]));
+          }
+        },
+        [&]
+        {
+          block.FindGradients(own, false);
+          for (int cell = 0; cell < block.Count; cell += LaneCount)
+          {
+            results.SetLanes(0, cell, block.Along(own.GetLanes(0, cell), cell));
+          }
+          for (int cell = 0; cell < block.Count; ++cell)
+          {
+            block.HasGradient[cell] ? set(block.Cells[cell], results.Get(0, cell))
+                                    : setCell(block.Cells[cell], block.Type, block.GetIds(cell));
+          }
+        },
+        setCell);
     });
   return curvature;
 }
@@ -401,6 +511,7 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
   const auto axes = static_cast<int>(
     std::count_if(dimensions, dimensions + 3, [](int samples) { return samples > 1; }));
   auto curvature = NewOutputArray("Curvature", 3, count);
+  const VectorPlaces vectorOf(vectors);
   const auto meet = [&](vtkIdType first, vtkIdType last)
   {
     double scratch[6];
@@ -415,7 +526,7 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
     {
       for (vtkIdType i = begin; i < end; ++i)
       {
-        const Vector3d u = GetDirection(vectors, i);
+        const Vector3d u = GetDirection(vectorOf(i));
         const auto getDifferences = [&](vtkIdType before, vtkIdType after, GradientFit& fit)
         {
           double scratch[3];
@@ -424,7 +535,7 @@ vtkSmartPointer<vtkFloatArray> ComputeStreamlineCurvature(const int (&dimensions
             place = Eigen::Map<const Vector3d>(
               positions.Read(static_cast<std::size_t>(sample), 1, scratch));
             // As on images, a neighbour without a direction stands for no change.
-            const Vector3d direction = GetDirection(vectors, sample);
+            const Vector3d direction = GetDirection(vectorOf(sample));
             return direction.isZero(0.0)
               ? u
               : Vector3d(direction.dot(u) < 0.0 ? -direction : direction);

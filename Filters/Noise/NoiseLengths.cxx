@@ -31,12 +31,12 @@ bool AnyFrom(const T* values, vtkIdType count, T least)
   {
     const T* from = values + first;
     const vtkIdType size = std::min(chunkSize, count - first);
-    bool any = false;
+    int found = 0;
     for (vtkIdType i = 0; i < size; ++i)
     {
-      any |= std::abs(from[i]) >= least;
+      found += std::abs(from[i]) >= least;
     }
-    if (any)
+    if (found > 0)
     {
       return true;
     }

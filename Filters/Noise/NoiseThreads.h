@@ -14,11 +14,14 @@
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
+#include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -75,6 +78,69 @@ void WithThreads(Work&& work)
   {
     work();
   }
+}
+
+/**
+ * Runs jobsOf(0) jobs of phase 0, then those of phase 1 and so on, in threads that stay, each with work(phase, job) of
+ * its own from `makeWork()`: VTK 9.2 starts its threads anew for every vtkSMPTools::For, which for short phases takes
+ * longer than the work. A phase begins when all but the one right before it are done, so that threads hardly wait for
+ * one another. No job waits for one that no thread has taken, so a single one gets through as well.
+ */
+template <typename JobsOf, typename MakeWork>
+void RunInPhases(vtkIdType phases, JobsOf&& jobsOf, MakeWork&& makeWork)
+{
+  std::vector<vtkIdType> ends(static_cast<std::size_t>(phases));
+  std::vector<std::atomic<vtkIdType>> left(ends.size());
+  vtkIdType jobs = 0;
+  for (std::size_t phase = 0; phase < ends.size(); ++phase)
+  {
+    left[phase] = jobsOf(static_cast<vtkIdType>(phase));
+    ends[phase] = jobs += left[phase];
+  }
+  std::atomic<vtkIdType> taken{ 0 };
+  std::atomic<std::size_t> done{ 0 }; // phases, without a gap
+  std::mutex mutex;
+  std::condition_variable isDone;
+  const auto finish = [&](std::size_t phase)
+  {
+    if (--left[phase] == 0)
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      while (done < left.size() && left[done] == 0)
+      {
+        ++done;
+      }
+      isDone.notify_all();
+    }
+  };
+  vtkSMPTools::For(0, std::max(vtkSMPTools::GetEstimatedNumberOfThreads(), 1), 1,
+    [&](vtkIdType, vtkIdType)
+    {
+      auto work = makeWork();
+      std::size_t phase = 0;
+      for (vtkIdType job = taken++; job < jobs; job = taken++)
+      {
+        while (job >= ends[phase])
+        {
+          ++phase;
+        }
+        if (done + 1 < phase)
+        {
+          std::unique_lock<std::mutex> lock(mutex);
+          isDone.wait(lock, [&] { return done + 1 >= phase; });
+        }
+        try
+        {
+          work(static_cast<vtkIdType>(phase), job - (phase > 0 ? ends[phase - 1] : 0));
+        }
+        catch (...)
+        {
+          finish(phase);
+          throw;
+        }
+        finish(phase);
+      }
+    });
 }
 
 /**

@@ -93,22 +93,22 @@ vtkSmartPointer<vtkFloatArray> CellsToPoints(vtkPolyData* surface, vtkFloatArray
   {
     auto means = NewOutputArray("Means", 3, count);
     PointSums sums(surface, means, DirectionSteps);
-    sums.AddCells(false,
+    sums.Sum(false,
       [&]
       {
-        return [&, read = DatasetCells::Reader(polygons)](vtkIdType cell, PointSums::Shares& shares) mutable
+        return [&, read = DatasetCells::Reader(polygons)](
+                 vtkIdType begin, vtkIdType end, PointSums::Shares& shares) mutable
         {
-          if (counts(cell))
+          for (vtkIdType cell = begin; cell < end; ++cell)
           {
-            const float* tuple = cells->GetPointer(components * cell) + part;
-            for (const vtkIdType point : read(cell))
+            if (counts(cell))
             {
-              sums.Append(shares, point, Eigen::Vector3d(tuple[0], tuple[1], tuple[2]));
+              const float* tuple = cells->GetPointer(components * cell) + part;
+              sums.Append(shares, read(cell), Eigen::Vector3d(tuple[0], tuple[1], tuple[2]));
             }
           }
         };
       });
-    sums.Finish();
     for (vtkIdType point = 0; point < count; ++point)
     {
       std::copy_n(means->GetPointer(3 * point), 3, points->GetPointer(components * point) + part);

@@ -5,6 +5,7 @@
 #include "FilterTestHelpers.h"
 #include "NoiseCells.h"
 #include "NoiseGhosts.h"
+#include "NoiseThreads.h"
 #include "SurfaceFields.h"
 
 #include "vtkAMRBox.h"
@@ -46,9 +47,12 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <thread>
 #include <utility>
 
 using namespace filtertest;
@@ -354,6 +358,39 @@ TEST(SteerableNoiseDataSets, CellsWithParallelSidesBendAlike)
         EXPECT_NEAR(noise, expected.at(corner), 2e-6) << "type " << shape.Type << ", corner " << corner;
       }
     }
+  }
+}
+
+TEST(SteerableNoiseDataSets, APhaseBeginsWhenAllButTheOneBeforeAreDone)
+{
+  constexpr vtkIdType phases = 300;
+  const auto jobsOf = [](vtkIdType phase) { return phase * 7 % 5; }; // some have none
+  std::vector<std::atomic<vtkIdType>> done(phases);
+  std::atomic<int> tooEarly{ 0 };
+  noise::WithThreads(
+    [&]
+    {
+      noise::RunInPhases(phases, jobsOf,
+        [&]
+        {
+          return [&](vtkIdType phase, vtkIdType job)
+          {
+            for (vtkIdType before = 0; before < phase - 1; ++before)
+            {
+              tooEarly += done[before] < jobsOf(before);
+            }
+            if (job % 2 == 0)
+            {
+              std::this_thread::sleep_for(std::chrono::microseconds(100));
+            }
+            ++done[phase];
+          };
+        });
+    });
+  EXPECT_EQ(tooEarly, 0);
+  for (vtkIdType phase = 0; phase < phases; ++phase)
+  {
+    EXPECT_EQ(done[phase], jobsOf(phase));
   }
 }
 

@@ -54,6 +54,15 @@ double AnisotropyAt(vtkDataArray* array, vtkIdType point, double usual)
 }
 
 //------------------------------------------------------------------------------
+std::array<double, 7> KeyOf(const steerable::SubbandWeightParameters& parameters)
+{
+  const steerable::SubbandParameters& pyramid = parameters.Pyramid;
+  return { double(pyramid.Orientations), double(pyramid.Scales), double(pyramid.TileSize),
+    pyramid.BandCenter, double(parameters.Method), double(parameters.RadialTriple),
+    parameters.FixedScale };
+}
+
+//------------------------------------------------------------------------------
 SubbandPointCounts& SubbandPointCounts::operator+=(const SubbandPointCounts& other)
 {
   this->Points += other.Points;
@@ -359,12 +368,9 @@ std::vector<double> SubbandPointWeights::GetKey() const
     double(this->NeedsDistortion), double(this->Seams != nullptr) };
   for (const SubbandLookup& lookup : this->Lookups)
   {
-    const steerable::SubbandWeightParameters& weights = lookup.Weights->GetParameters();
-    const steerable::SubbandParameters& pyramid = weights.Pyramid;
-    key.insert(key.end(),
-      { double(pyramid.Orientations), double(pyramid.Scales), double(pyramid.TileSize),
-        pyramid.BandCenter, double(weights.Method), double(weights.RadialTriple),
-        weights.FixedScale, lookup.Layout->Repeats, double(lookup.Tiles->Residuals) });
+    const std::array<double, 7> weights = KeyOf(lookup.Weights->GetParameters());
+    key.insert(key.end(), weights.begin(), weights.end());
+    key.insert(key.end(), { lookup.Layout->Repeats, double(lookup.Tiles->Residuals) });
   }
   if (this->Factors)
   {

@@ -21,6 +21,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -30,6 +31,9 @@ class vtkUnsignedCharArray;
 namespace noise
 {
 class SubbandSeams;
+
+/// All that weights with these parameters depend on, for comparison.
+std::array<double, 7> KeyOf(const steerable::SubbandWeightParameters& parameters);
 
 /// What points are looked up in and weighted with on the texture or in a planar projection.
 struct SubbandLookup

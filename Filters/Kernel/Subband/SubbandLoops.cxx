@@ -6,8 +6,7 @@
 #include <cmath>
 #include <utility>
 
-// Highway includes this file once more for every SIMD level and picks one at run time. Loops are
-// plain: their lengths are constants, and compilers make registers of them.
+// Highway includes this file once more for every SIMD level and picks one at run time.
 #define HWY_DISABLED_TARGETS \
   (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -21,9 +20,60 @@ namespace steerable
 {
 namespace HWY_NAMESPACE
 {
-//--- Fits ---------------------------------------------------------------------
-constexpr int MostDirections = 16;
+namespace hn = hwy::HWY_NAMESPACE;
 
+// Count numbers in registers, as wide ones as they fill.
+template <typename T, int Count>
+struct Row
+{
+  using Tag = hn::CappedTag<T, (Count & -Count)>;
+  static constexpr int Step = static_cast<int>(hn::MaxLanes(Tag()));
+  static constexpr int Parts = Count / Step;
+
+  HWY_INLINE void SetZero()
+  {
+    for (int p = 0; p < Parts; ++p)
+    {
+      this->Part[p] = hn::Zero(Tag());
+    }
+  }
+  HWY_INLINE void AddProduct(T factor, const T* values)
+  {
+    const auto broadcast = hn::Set(Tag(), factor);
+    for (int p = 0; p < Parts; ++p)
+    {
+      this->Part[p] = hn::MulAdd(broadcast, hn::LoadU(Tag(), values + p * Step), this->Part[p]);
+    }
+  }
+  HWY_INLINE void AddProduct(T factor, const Row& values)
+  {
+    const auto broadcast = hn::Set(Tag(), factor);
+    for (int p = 0; p < Parts; ++p)
+    {
+      this->Part[p] = hn::MulAdd(broadcast, values.Part[p], this->Part[p]);
+    }
+  }
+  HWY_INLINE void Store(T* values) const
+  {
+    for (int p = 0; p < Parts; ++p)
+    {
+      hn::StoreU(this->Part[p], Tag(), values + p * Step);
+    }
+  }
+  HWY_INLINE T Dot(const T* values) const
+  {
+    auto sum = hn::Mul(this->Part[0], hn::LoadU(Tag(), values));
+    for (int p = 1; p < Parts; ++p)
+    {
+      sum = hn::MulAdd(this->Part[p], hn::LoadU(Tag(), values + p * Step), sum);
+    }
+    return hn::GetLane(hn::SumOfLanes(Tag(), sum));
+  }
+
+  hn::Vec<Tag> Part[Parts];
+};
+
+//--- Fits ---------------------------------------------------------------------
 // Rows of a table for `Count` values of q, and how far each is on the way to the next row.
 template <int Count>
 inline void Locate(const RadialTable& table, const double* q, std::uint64_t* row, double* fraction)
@@ -41,81 +91,70 @@ inline void Locate(const RadialTable& table, const double* q, std::uint64_t* row
 }
 
 template <int Stride>
-inline void Interpolate(
-  const RadialTable& table, std::uint64_t entry, double fraction, double* values)
+HWY_INLINE Row<double, Stride> Interpolate(
+  const RadialTable& table, std::uint64_t entry, double fraction)
 {
-  const double* row = table.Rows.data() + entry * Stride;
-  for (int j = 0; j < Stride; ++j)
+  using R = Row<double, Stride>;
+  const typename R::Tag d;
+  const double* here = table.Rows.data() + entry * Stride;
+  const auto share = hn::Set(d, fraction);
+  R values;
+  for (int p = 0; p < R::Parts; ++p)
   {
-    values[j] = row[j] + fraction * (row[j + Stride] - row[j]);
+    const auto from = hn::LoadU(d, here + p * R::Step);
+    const auto to = hn::LoadU(d, here + Stride + p * R::Step);
+    values.Part[p] = hn::MulAdd(share, hn::Sub(to, from), from);
   }
-}
-
-// sum_psi a_m cos(2m psi) R(q), for all m of a parity; R of four directions are joined already.
-template <int K, int First, int Harmonics, int Stride>
-inline void SumHarmonics(const DirectionFit::Octant& octant, const double* joined, double* sums)
-{
-  double sum[Harmonics * Stride] = {};
-  for (int n = 0; n < octant.Count; ++n)
-  {
-    const double* factor = octant.Harmonics.data() + n * K + First;
-    for (int m = 0; m < Harmonics; ++m)
-    {
-      for (int j = 0; j < Stride; ++j)
-      {
-        sum[m * Stride + j] += factor[m] * joined[n * Stride + j];
-      }
-    }
-  }
-  for (int n = 0; n < Harmonics * Stride; ++n)
-  {
-    sums[n] = sum[n];
-  }
+  return values;
 }
 
 template <int K, int Stride>
-inline void Fit(
+HWY_INLINE void Fit(
   const DirectionFit& fit, const RadialTable& table, const double metric[3], double* weights)
 {
+  using R = Row<double, Stride>;
   const double mean = 0.5 * (metric[0] + metric[2]);
   const double deviator[2] = { 0.5 * (metric[0] - metric[2]), metric[1] };
   const double radius = std::sqrt(deviator[0] * deviator[0] + deviator[1] * deviator[1]);
 
   const DirectionFit::Octant* octant = fit.Octants.data();
-  while (!(mean + radius <= octant->MostRatio * (mean - radius)) &&
-    octant != &fit.Octants.back())
+  while (!(mean + radius <= octant->MostRatio * (mean - radius)) && octant != &fit.Octants.back())
   {
     ++octant;
   }
-  double even[MostDirections * Stride];
-  double odd[MostDirections * Stride];
+  // Of each harmonic a_m sum_psi cos(2m psi) R(q).
+  R sums[K];
+  for (int m = 0; m < K; ++m)
+  {
+    sums[m].SetZero();
+  }
+  const double* factor = octant->Harmonics.data();
   for (int first = 0; first < octant->Count; first += 4)
   {
     double q[8], fraction[8];
-    std::uint64_t row[8];
+    std::uint64_t entry[8];
     for (int n = 0; n < 4; ++n)
     {
       q[n] = mean + radius * octant->Cosines[first + n];
       q[n + 4] = mean - radius * octant->Cosines[first + n];
     }
-    Locate<8>(table, q, row, fraction);
-    for (int n = 0; n < 4; ++n)
+    Locate<8>(table, q, entry, fraction);
+    for (int n = 0; n < 4; ++n, factor += K)
     {
-      double close[Stride], across[Stride];
-      Interpolate<Stride>(table, row[n], fraction[n], close);
-      Interpolate<Stride>(table, row[n + 4], fraction[n + 4], across);
-      for (int j = 0; j < Stride; ++j)
+      const R own = Interpolate<Stride>(table, entry[n], fraction[n]);
+      const R across = Interpolate<Stride>(table, entry[n + 4], fraction[n + 4]);
+      R even, odd;
+      for (int p = 0; p < R::Parts; ++p)
       {
-        even[(first + n) * Stride + j] = close[j] + across[j];
-        odd[(first + n) * Stride + j] = close[j] - across[j];
+        even.Part[p] = hn::Add(own.Part[p], across.Part[p]);
+        odd.Part[p] = hn::Sub(own.Part[p], across.Part[p]);
+      }
+      for (int m = 0; m < K; ++m)
+      {
+        sums[m].AddProduct(factor[m], m % 2 == 0 ? even : odd);
       }
     }
   }
-  constexpr int evens = (K + 1) / 2;
-  double sums[K * Stride];
-  SumHarmonics<K, 0, evens, Stride>(*octant, even, sums);
-  SumHarmonics<K, evens, K - evens, Stride>(*octant, odd, sums + evens * Stride);
-  const auto harmonic = [&](int m) { return sums + (m % 2 * evens + m / 2) * Stride; };
 
   // cos 2m phi and sin 2m phi.
   double c[K], s[K];
@@ -130,40 +169,31 @@ inline void Fit(
   }
   // At K orientations the harmonics m and K - m are one.
   double waves[K * Stride];
-  for (int j = 0; j < Stride; ++j)
+  sums[0].Store(waves);
+  for (int m = 1; 2 * m <= K; ++m)
   {
-    waves[j] = harmonic(0)[j];
-  }
-  for (int m = 1; 2 * m < K; ++m)
-  {
-    for (int j = 0; j < Stride; ++j)
+    R cosine, sine;
+    cosine.SetZero();
+    cosine.AddProduct(c[m], sums[m]);
+    if (2 * m < K)
     {
-      const double a = harmonic(m)[j], b = harmonic(K - m)[j];
-      waves[m * Stride + j] = a * c[m] + b * c[K - m];
-      waves[(K - m) * Stride + j] = a * s[m] - b * s[K - m];
+      sine.SetZero();
+      sine.AddProduct(s[m], sums[m]);
+      cosine.AddProduct(c[K - m], sums[K - m]);
+      sine.AddProduct(-s[K - m], sums[K - m]);
+      sine.Store(waves + (K - m) * Stride);
     }
-  }
-  if (K % 2 == 0)
-  {
-    for (int j = 0; j < Stride; ++j)
-    {
-      waves[K / 2 * Stride + j] = harmonic(K / 2)[j] * c[K / 2];
-    }
+    cosine.Store(waves + m * Stride);
   }
   for (int j = 0; j < table.Width; ++j)
   {
-    double sum[K] = {};
+    Row<double, K> sum;
+    sum.SetZero();
     for (int m = 0; m < K; ++m)
     {
-      for (int i = 0; i < K; ++i)
-      {
-        sum[i] += fit.Waves[m * K + i] * waves[m * Stride + j];
-      }
+      sum.AddProduct(waves[m * Stride + j], fit.Waves.data() + m * K);
     }
-    for (int i = 0; i < K; ++i)
-    {
-      weights[j * K + i] = sum[i];
-    }
+    sum.Store(weights + j * K);
   }
 }
 
@@ -200,30 +230,23 @@ void FitBandsHere(
 
 //--- Power --------------------------------------------------------------------
 template <int K>
-inline double Power(const PowerForm& form, const double* gamma)
+HWY_INLINE double Power(const PowerForm& form, const double* gamma)
 {
-  double power[K] = {};
+  double sum = 0.0;
   for (int j = 0; j < form.Scales; ++j)
   {
     const double* own = gamma + j * K;
-    const double* next = j + 1 < form.Scales ? own + K : own;
-    double filtered[K] = {};
+    Row<double, K> filtered;
+    filtered.SetZero();
     for (int m = 0; m < K; ++m)
     {
-      for (int i = 0; i < K; ++i)
-      {
-        filtered[i] += form.Angular[m * K + i] * own[m];
-      }
+      filtered.AddProduct(own[m], form.Angular.data() + m * K);
     }
-    for (int i = 0; i < K; ++i)
+    sum += form.Diagonal[j] * filtered.Dot(own);
+    if (j + 1 < form.Scales)
     {
-      power[i] += filtered[i] * (form.Diagonal[j] * own[i] + form.Beside[j] * next[i]);
+      sum += form.Beside[j] * filtered.Dot(own + K);
     }
-  }
-  double sum = 0.0;
-  for (int i = 0; i < K; ++i)
-  {
-    sum += power[i];
   }
   return sum;
 }
@@ -292,16 +315,18 @@ struct Neighborhood
   float Weight[16];
 };
 
-inline Neighborhood Gather(const SubbandTiles& tiles, TileLookup lookup, double u, double v)
+HWY_INLINE Neighborhood Gather(const SubbandTiles& tiles, TileLookup lookup, double u, double v)
 {
   const AxisTaps x = LocateTaps(lookup, u, tiles.Parameters.TileSize);
   const AxisTaps y = LocateTaps(lookup, v, tiles.Parameters.TileSize);
+  const int components = tiles.Components();
   Neighborhood points;
   for (int b = 0; b < y.Count; ++b)
   {
+    const float* row = tiles.Texel(0, y.Texel[b]);
     for (int a = 0; a < x.Count; ++a)
     {
-      points.Texel[points.Count] = tiles.Texel(x.Texel[a], y.Texel[b]);
+      points.Texel[points.Count] = row + x.Texel[a] * components;
       points.Weight[points.Count] = x.Weight[a] * y.Weight[b];
       ++points.Count;
     }
@@ -309,83 +334,53 @@ inline Neighborhood Gather(const SubbandTiles& tiles, TileLookup lookup, double 
   return points;
 }
 
-// Interpolate Width bands from `first` on. Width is known to the compiler, which keeps the sums in
-// vector registers: this is where the time of subband noise goes.
-template <int Width>
-inline void InterpolateBands(const Neighborhood& points, int first, float* bands)
+// Interpolates Width bands from `first` on, as often as they fit before `last`, and hands each to
+// `take`(first, bands): this is where the time of subband noise goes.
+template <int Width, typename Take>
+HWY_INLINE void InterpolateBands(
+  const Neighborhood& points, int& first, int last, const Take& take)
 {
-  float sum[Width] = {};
-  for (int n = 0; n < points.Count; ++n)
+  for (; first + Width <= last; first += Width)
   {
-    const float* texel = points.Texel[n] + first;
-    const float weight = points.Weight[n];
-    for (int c = 0; c < Width; ++c)
+    Row<float, Width> bands;
+    bands.SetZero();
+    for (int n = 0; n < points.Count; ++n)
     {
-      sum[c] += weight * texel[c];
+      bands.AddProduct(points.Weight[n], points.Texel[n] + first);
     }
-  }
-  for (int c = 0; c < Width; ++c)
-  {
-    bands[c] = sum[c];
+    take(first, bands);
   }
 }
 
-inline void InterpolateAll(const Neighborhood& points, int components, float* bands)
+template <typename Take>
+HWY_INLINE void InterpolateAll(const Neighborhood& points, int components, const Take& take)
 {
-  int c = 0;
-  for (; c + 16 <= components; c += 16)
-  {
-    InterpolateBands<16>(points, c, bands + c);
-  }
-  for (; c + 4 <= components; c += 4)
-  {
-    InterpolateBands<4>(points, c, bands + c);
-  }
-  for (; c + 2 <= components; c += 2)
-  {
-    InterpolateBands<2>(points, c, bands + c);
-  }
-  if (c < components)
-  {
-    InterpolateBands<1>(points, c, bands + c);
-  }
-}
-
-// In interleaved partial sums, which the compiler may compute side by side.
-inline float Dot(const float* a, const float* b, int count)
-{
-  float partial[8] = {};
-  int c = 0;
-  for (; c + 8 <= count; c += 8)
-  {
-    for (int lane = 0; lane < 8; ++lane)
-    {
-      partial[lane] += a[c + lane] * b[c + lane];
-    }
-  }
-  for (; c < count; ++c)
-  {
-    partial[0] += a[c] * b[c];
-  }
-  return ((partial[0] + partial[1]) + (partial[2] + partial[3])) +
-    ((partial[4] + partial[5]) + (partial[6] + partial[7]));
+  int first = 0;
+  InterpolateBands<32>(points, first, components, take);
+  InterpolateBands<8>(points, first, components, take);
+  InterpolateBands<4>(points, first, components, take);
+  InterpolateBands<2>(points, first, components, take);
+  InterpolateBands<1>(points, first, components, take);
 }
 
 void SampleTilesHere(
   const SubbandTiles& tiles, TileLookup lookup, double u, double v, float* bands)
 {
-  InterpolateAll(Gather(tiles, lookup, u, v), tiles.Components(), bands);
+  InterpolateAll(Gather(tiles, lookup, u, v), tiles.Components(),
+    [=](int first, const auto& some) HWY_ATTR { some.Store(bands + first); });
 }
 
 void SumTilesHere(const SubbandTiles& tiles, TileLookup lookup, std::size_t count,
   const double* uv, const float* weights, float* noise)
 {
   const int components = tiles.Components();
-  float bands[MostSubbandComponents];
   for (std::size_t p = 0; p < count; ++p)
   {
-    InterpolateAll(Gather(tiles, lookup, uv[2 * p], uv[2 * p + 1]), components, bands);
-    noise[p] = Dot(bands, weights + p * components, components);
+    const float* own = weights + p * components;
+    float sum = 0.0f;
+    InterpolateAll(Gather(tiles, lookup, uv[2 * p], uv[2 * p + 1]), components,
+      [&](int first, const auto& bands) HWY_ATTR { sum += bands.Dot(own + first); });
+    noise[p] = sum;
   }
 }
 } // namespace HWY_NAMESPACE
@@ -468,14 +463,10 @@ void DirectionFit::Prepare(
     {
       const double psi = Pi * (n + 0.5) / (4 * octant.Count);
       octant.Cosines.push_back(std::cos(2.0 * psi));
-      for (const int parity : { 0, 1 })
+      for (int m = 0; m < K; ++m)
       {
-        for (int m = parity; m < K; m += 2)
-        {
-          // 2 pi / N, at psi and -psi.
-          octant.Harmonics.push_back(
-            Pi / octant.Count * amplitudes[m] * std::cos(2.0 * m * psi));
-        }
+        // 2 pi / N, at psi and -psi.
+        octant.Harmonics.push_back(Pi / octant.Count * amplitudes[m] * std::cos(2.0 * m * psi));
       }
     }
   }

@@ -78,7 +78,7 @@ struct DirectionFit
     double MostRatio = 0.0;
     /// Of 2 psi.
     std::vector<double> Cosines;
-    /// K for each direction, even m before odd ones.
+    /// Of each direction K factors.
     std::vector<double> Harmonics;
   };
   std::array<Octant, 3> Octants;

@@ -74,19 +74,26 @@ struct Row
 };
 
 //--- Fits ---------------------------------------------------------------------
-// Rows of a table for `Count` values of q, and how far each is on the way to the next row.
-template <int Count>
-inline void Locate(const RadialTable& table, const double* q, std::uint64_t* row, double* fraction)
+// Entries of a table for eight values of q, and how far each is on the way to the next one.
+HWY_INLINE void Locate(
+  const RadialTable& table, const double* q, std::uint64_t* entry, double* fraction)
 {
-  constexpr std::uint64_t one = std::uint64_t{ 0x3ff } << 52;
-  constexpr std::uint64_t mantissa = (std::uint64_t{ 1 } << 52) - 1;
-  for (int n = 0; n < Count; ++n)
+  const hn::CappedTag<double, 8> d;
+  const hn::RebindToUnsigned<decltype(d)> bits;
+  const auto mantissa = hn::Set(bits, (std::uint64_t{ 1 } << 52) - 1);
+  const auto one = hn::Set(d, 1.0);
+  const auto smallest = hn::Set(d, table.Smallest);
+  for (std::size_t n = 0; n < 8; n += hn::MaxLanes(d))
   {
-    // In this order NaN, from an overflow, becomes the smallest.
-    const double atLeast = table.Smallest < q[n] ? q[n] : table.Smallest;
-    const std::uint64_t bits = BitsOf(table.Largest < atLeast ? table.Largest : atLeast);
-    row[n] = (bits >> (52 - table.Bits)) - table.First;
-    fraction[n] = FromBits(((bits << table.Bits) & mantissa) | one) - 1.0;
+    const auto any = hn::LoadU(d, q + n);
+    // In this way NaN, from an overflow, becomes the smallest.
+    const auto inside = hn::Min(
+      hn::IfThenElse(hn::Gt(any, smallest), any, smallest), hn::Set(d, table.Largest));
+    const auto found = hn::BitCast(bits, inside);
+    hn::StoreU(hn::Sub(hn::ShiftRightSame(found, 52 - table.Bits), hn::Set(bits, table.First)),
+      bits, entry + n);
+    const auto rest = hn::And(hn::ShiftLeftSame(found, table.Bits), mantissa);
+    hn::StoreU(hn::Sub(hn::BitCast(d, hn::Or(rest, hn::BitCast(bits, one))), one), d, fraction + n);
   }
 }
 
@@ -138,7 +145,7 @@ HWY_INLINE void Fit(
       q[n] = mean + radius * octant->Cosines[first + n];
       q[n + 4] = mean - radius * octant->Cosines[first + n];
     }
-    Locate<8>(table, q, entry, fraction);
+    Locate(table, q, entry, fraction);
     for (int n = 0; n < 4; ++n, factor += K)
     {
       const R own = Interpolate<Stride>(table, entry[n], fraction[n]);
@@ -158,14 +165,13 @@ HWY_INLINE void Fit(
 
   // cos 2m phi and sin 2m phi.
   double c[K], s[K];
-  c[0] = 1.0;
-  s[0] = 0.0;
-  const double turn[2] = { radius > 0.0 ? deviator[0] / radius : 1.0,
-    radius > 0.0 ? deviator[1] / radius : 0.0 };
-  for (int m = 1; m < K; ++m)
+  c[1] = radius > 0.0 ? deviator[0] / radius : 1.0;
+  s[1] = radius > 0.0 ? deviator[1] / radius : 0.0;
+  for (int m = 2; m < K; ++m)
   {
-    c[m] = c[m - 1] * turn[0] - s[m - 1] * turn[1];
-    s[m] = s[m - 1] * turn[0] + c[m - 1] * turn[1];
+    const int half = m / 2, rest = m - half;
+    c[m] = c[half] * c[rest] - s[half] * s[rest];
+    s[m] = s[half] * c[rest] + c[half] * s[rest];
   }
   // At K orientations the harmonics m and K - m are one.
   double waves[K * Stride];
@@ -208,7 +214,7 @@ inline void FitScales(
     case 4:
       return Fit<K, 4>(fit, table, metric, weights);
     default:
-      return Fit<K, 6>(fit, table, metric, weights);
+      return Fit<K, 8>(fit, table, metric, weights);
   }
 }
 
@@ -267,39 +273,38 @@ double PowerOfHere(const PowerForm& form, const double* gamma)
 }
 
 //--- Sums of tiles ------------------------------------------------------------
-// Two texels per axis, or four, with their weights.
+// Taps texels along an axis, two or four, with their weights.
+template <int Taps>
 struct AxisTaps
 {
-  int Count;
-  int Texel[4];
-  float Weight[4];
+  int Texel[Taps];
+  float Weight[Taps];
 };
 
-inline AxisTaps LocateTaps(TileLookup lookup, double coordinate, int size)
+template <int Taps>
+HWY_INLINE AxisTaps<Taps> LocateTaps(double coordinate, int size)
 {
   const double position = (coordinate - std::floor(coordinate)) * size;
   // A coordinate that is not finite gives NaN, not a read outside the tile.
   const double cell = position >= 0.0 ? std::floor(position) : 0.0;
   const float t = static_cast<float>(position - cell);
 
-  AxisTaps taps;
+  AxisTaps<Taps> taps;
   int first = static_cast<int>(cell);
-  if (lookup == TileLookup::Bilinear)
+  if (Taps == 2)
   {
-    taps.Count = 2;
     taps.Weight[0] = 1.0f - t;
     taps.Weight[1] = t;
   }
   else
   {
-    taps.Count = 4;
     taps.Weight[0] = 0.5f * t * (t * (2.0f - t) - 1.0f);
     taps.Weight[1] = 0.5f * (t * t * (3.0f * t - 5.0f) + 2.0f);
-    taps.Weight[2] = 0.5f * t * (t * (4.0f - 3.0f * t) + 1.0f);
-    taps.Weight[3] = 0.5f * t * t * (t - 1.0f);
+    taps.Weight[Taps - 2] = 0.5f * t * (t * (4.0f - 3.0f * t) + 1.0f);
+    taps.Weight[Taps - 1] = 0.5f * t * t * (t - 1.0f);
     --first;
   }
-  for (int n = 0; n < taps.Count; ++n)
+  for (int n = 0; n < Taps; ++n)
   {
     const int texel = first + n;
     taps.Texel[n] = texel < 0 ? texel + size : texel < size ? texel : texel - size;
@@ -308,27 +313,27 @@ inline AxisTaps LocateTaps(TileLookup lookup, double coordinate, int size)
 }
 
 // The texels around a point, with their weights.
+template <int Taps>
 struct Neighborhood
 {
-  int Count = 0;
-  const float* Texel[16];
-  float Weight[16];
+  const float* Texel[Taps * Taps];
+  float Weight[Taps * Taps];
 };
 
-HWY_INLINE Neighborhood Gather(const SubbandTiles& tiles, TileLookup lookup, double u, double v)
+template <int Taps>
+HWY_INLINE Neighborhood<Taps> Gather(const SubbandTiles& tiles, double u, double v)
 {
-  const AxisTaps x = LocateTaps(lookup, u, tiles.Parameters.TileSize);
-  const AxisTaps y = LocateTaps(lookup, v, tiles.Parameters.TileSize);
+  const AxisTaps<Taps> x = LocateTaps<Taps>(u, tiles.Parameters.TileSize);
+  const AxisTaps<Taps> y = LocateTaps<Taps>(v, tiles.Parameters.TileSize);
   const int components = tiles.Components();
-  Neighborhood points;
-  for (int b = 0; b < y.Count; ++b)
+  Neighborhood<Taps> points;
+  for (int b = 0; b < Taps; ++b)
   {
     const float* row = tiles.Texel(0, y.Texel[b]);
-    for (int a = 0; a < x.Count; ++a)
+    for (int a = 0; a < Taps; ++a)
     {
-      points.Texel[points.Count] = row + x.Texel[a] * components;
-      points.Weight[points.Count] = x.Weight[a] * y.Weight[b];
-      ++points.Count;
+      points.Texel[b * Taps + a] = row + x.Texel[a] * components;
+      points.Weight[b * Taps + a] = x.Weight[a] * y.Weight[b];
     }
   }
   return points;
@@ -336,15 +341,15 @@ HWY_INLINE Neighborhood Gather(const SubbandTiles& tiles, TileLookup lookup, dou
 
 // Interpolates Width bands from `first` on, as often as they fit before `last`, and hands each to
 // `take`(first, bands): this is where the time of subband noise goes.
-template <int Width, typename Take>
+template <int Width, int Taps, typename Take>
 HWY_INLINE void InterpolateBands(
-  const Neighborhood& points, int& first, int last, const Take& take)
+  const Neighborhood<Taps>& points, int& first, int last, const Take& take)
 {
   for (; first + Width <= last; first += Width)
   {
     Row<float, Width> bands;
     bands.SetZero();
-    for (int n = 0; n < points.Count; ++n)
+    for (int n = 0; n < Taps * Taps; ++n)
     {
       bands.AddProduct(points.Weight[n], points.Texel[n] + first);
     }
@@ -352,8 +357,9 @@ HWY_INLINE void InterpolateBands(
   }
 }
 
-template <typename Take>
-HWY_INLINE void InterpolateAll(const Neighborhood& points, int components, const Take& take)
+template <int Taps, typename Take>
+HWY_INLINE void InterpolateAll(
+  const Neighborhood<Taps>& points, int components, const Take& take)
 {
   int first = 0;
   InterpolateBands<32>(points, first, components, take);
@@ -363,25 +369,39 @@ HWY_INLINE void InterpolateAll(const Neighborhood& points, int components, const
   InterpolateBands<1>(points, first, components, take);
 }
 
-void SampleTilesHere(
-  const SubbandTiles& tiles, TileLookup lookup, double u, double v, float* bands)
+template <int Taps>
+HWY_INLINE void Sample(const SubbandTiles& tiles, double u, double v, float* bands)
 {
-  InterpolateAll(Gather(tiles, lookup, u, v), tiles.Components(),
+  InterpolateAll(Gather<Taps>(tiles, u, v), tiles.Components(),
     [=](int first, const auto& some) HWY_ATTR { some.Store(bands + first); });
 }
 
-void SumTilesHere(const SubbandTiles& tiles, TileLookup lookup, std::size_t count,
-  const double* uv, const float* weights, float* noise)
+void SampleTilesHere(
+  const SubbandTiles& tiles, TileLookup lookup, double u, double v, float* bands)
+{
+  lookup == TileLookup::Bilinear ? Sample<2>(tiles, u, v, bands) : Sample<4>(tiles, u, v, bands);
+}
+
+template <int Taps>
+HWY_INLINE void Sum(const SubbandTiles& tiles, std::size_t count, const double* uv,
+  const float* weights, float* noise)
 {
   const int components = tiles.Components();
   for (std::size_t p = 0; p < count; ++p)
   {
     const float* own = weights + p * components;
     float sum = 0.0f;
-    InterpolateAll(Gather(tiles, lookup, uv[2 * p], uv[2 * p + 1]), components,
+    InterpolateAll(Gather<Taps>(tiles, uv[2 * p], uv[2 * p + 1]), components,
       [&](int first, const auto& bands) HWY_ATTR { sum += bands.Dot(own + first); });
     noise[p] = sum;
   }
+}
+
+void SumTilesHere(const SubbandTiles& tiles, TileLookup lookup, std::size_t count,
+  const double* uv, const float* weights, float* noise)
+{
+  lookup == TileLookup::Bilinear ? Sum<2>(tiles, count, uv, weights, noise)
+                                 : Sum<4>(tiles, count, uv, weights, noise);
 }
 } // namespace HWY_NAMESPACE
 } // namespace steerable
@@ -416,7 +436,7 @@ void RadialTable::Fill(
     const double q = FromBits(entry << (52 - bits));
     const Eigen::VectorXd row = function(0.5 * std::log2(q));
     this->Width = static_cast<int>(row.size());
-    this->Stride = (this->Width + 1) / 2 * 2;
+    this->Stride = this->Width > 4 ? 8 : this->Width > 2 ? 4 : 2;
     this->Rows.insert(this->Rows.end(), row.data(), row.data() + row.size());
     this->Rows.resize(this->Rows.size() + this->Stride - this->Width, 0.0);
   }
@@ -424,13 +444,17 @@ void RadialTable::Fill(
 
 void RadialTable::Interpolate(double q, double* values) const
 {
-  std::uint64_t row;
-  double fraction;
-  HWY_NAMESPACE::Locate<1>(*this, &q, &row, &fraction);
-  const double* here = this->Rows.data() + row * this->Stride;
+  const double inside =
+    std::min(this->Largest, q > this->Smallest ? q : this->Smallest); // of NaN too
+  const std::uint64_t bits = BitsOf(inside);
+  const std::uint64_t entry = bits >> (52 - this->Bits);
+  const double from = FromBits(entry << (52 - this->Bits));
+  const double to = FromBits((entry + 1) << (52 - this->Bits));
+  const double fraction = (inside - from) / (to - from);
+  const double* row = this->Rows.data() + (entry - this->First) * this->Stride;
   for (int j = 0; j < this->Width; ++j)
   {
-    values[j] = here[j] + fraction * (here[j + this->Stride] - here[j]);
+    values[j] = row[j] + fraction * (row[j + this->Stride] - row[j]);
   }
 }
 

@@ -50,7 +50,7 @@ struct RadialTable
   int Bits = 0;
   std::uint64_t First = 0; ///< The leading bits of Smallest.
   int Width = 0;           ///< J
-  int Stride = 0;          ///< J, rounded up to an even number with zeros behind.
+  int Stride = 0;          ///< J, rounded up to 2, 4 or 8, with zeros behind.
   std::vector<double> Rows;
 };
 

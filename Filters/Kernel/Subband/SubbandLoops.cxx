@@ -103,7 +103,7 @@ HWY_INLINE Row<double, Stride> Interpolate(
 {
   using R = Row<double, Stride>;
   const typename R::Tag d;
-  const double* here = table.Rows.data() + entry * Stride;
+  const double* here = table.Rows.data()->Values.data() + entry * Stride;
   const auto share = hn::Set(d, fraction);
   R values;
   for (int p = 0; p < R::Parts; ++p)
@@ -238,23 +238,34 @@ void FitBandsHere(
 template <int K>
 HWY_INLINE double Power(const PowerForm& form, const double* gamma)
 {
-  double sum = 0.0;
+  using R = Row<double, K>;
+  const typename R::Tag d;
+  R power;
+  power.SetZero();
   for (int j = 0; j < form.Scales; ++j)
   {
     const double* own = gamma + j * K;
-    Row<double, K> filtered;
+    const double* next = j + 1 < form.Scales ? own + K : own;
+    R filtered, joined;
     filtered.SetZero();
     for (int m = 0; m < K; ++m)
     {
       filtered.AddProduct(own[m], form.Angular.data() + m * K);
     }
-    sum += form.Diagonal[j] * filtered.Dot(own);
-    if (j + 1 < form.Scales)
+    joined.SetZero();
+    joined.AddProduct(form.Diagonal[j], own);
+    joined.AddProduct(form.Beside[j], next);
+    for (int p = 0; p < R::Parts; ++p)
     {
-      sum += form.Beside[j] * filtered.Dot(own + K);
+      power.Part[p] = hn::MulAdd(filtered.Part[p], joined.Part[p], power.Part[p]);
     }
   }
-  return sum;
+  auto sum = power.Part[0];
+  for (int p = 1; p < R::Parts; ++p)
+  {
+    sum = hn::Add(sum, power.Part[p]);
+  }
+  return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
 double PowerOfHere(const PowerForm& form, const double* gamma)
@@ -430,16 +441,18 @@ void RadialTable::Fill(
   this->First = leading(this->Smallest);
   // One more than the last, to interpolate towards.
   const std::uint64_t end = leading(this->Largest) + 2;
-  this->Rows.clear();
+  std::vector<double> values;
   for (std::uint64_t entry = this->First; entry < end; ++entry)
   {
     const double q = FromBits(entry << (52 - bits));
     const Eigen::VectorXd row = function(0.5 * std::log2(q));
     this->Width = static_cast<int>(row.size());
     this->Stride = this->Width > 4 ? 8 : this->Width > 2 ? 4 : 2;
-    this->Rows.insert(this->Rows.end(), row.data(), row.data() + row.size());
-    this->Rows.resize(this->Rows.size() + this->Stride - this->Width, 0.0);
+    values.insert(values.end(), row.data(), row.data() + row.size());
+    values.resize((entry - this->First + 1) * this->Stride, 0.0);
   }
+  this->Rows.assign((values.size() + 7) / 8, AlignedNumbers());
+  std::copy(values.begin(), values.end(), this->Rows.data()->Values.data());
 }
 
 void RadialTable::Interpolate(double q, double* values) const
@@ -451,7 +464,7 @@ void RadialTable::Interpolate(double q, double* values) const
   const double from = FromBits(entry << (52 - this->Bits));
   const double to = FromBits((entry + 1) << (52 - this->Bits));
   const double fraction = (inside - from) / (to - from);
-  const double* row = this->Rows.data() + (entry - this->First) * this->Stride;
+  const double* row = this->Rows.data()->Values.data() + (entry - this->First) * this->Stride;
   for (int j = 0; j < this->Width; ++j)
   {
     values[j] = row[j] + fraction * (row[j + this->Stride] - row[j]);

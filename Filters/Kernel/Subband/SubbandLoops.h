@@ -36,6 +36,12 @@ inline double FromBits(std::uint64_t bits)
   return q;
 }
 
+/// Numbers for registers, which read them fastest where they begin at a multiple of their size.
+struct alignas(64) AlignedNumbers
+{
+  std::array<double, 8> Values = {};
+};
+
 /// A function of q = 4^c with a value for each of J scales, kept piecewise linear. Entries are found
 /// through the leading bits of q, which grow with it, linearly between powers of two.
 struct RadialTable
@@ -51,7 +57,7 @@ struct RadialTable
   std::uint64_t First = 0; ///< The leading bits of Smallest.
   int Width = 0;           ///< J
   int Stride = 0;          ///< J, rounded up to 2, 4 or 8, with zeros behind.
-  std::vector<double> Rows;
+  std::vector<AlignedNumbers> Rows;
 };
 
 /**

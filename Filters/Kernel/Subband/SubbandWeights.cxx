@@ -296,13 +296,17 @@ bool SubbandWeights::ClampMetric(Eigen::Matrix2d& metric) const
 {
   const double smallest = this->SmallestMetric;
   const double largest = this->LargestMetric;
-  const Eigenvalues found = EigenvaluesOf(metric);
   // A metric built to lie on the limit may miss it by rounding, which is no change worth reporting.
   constexpr double tolerance = 1e-12;
-  if (found.Smaller >= smallest * (1.0 - tolerance) && found.Larger <= largest * (1.0 + tolerance))
+  // Most lie inside, far from overflow: a plain root is enough to tell.
+  const double mean = 0.5 * (metric(0, 0) + metric(1, 1));
+  const double half = 0.5 * (metric(0, 0) - metric(1, 1));
+  const double radius = std::sqrt(half * half + metric(0, 1) * metric(0, 1));
+  if (mean - radius >= smallest * (1.0 - tolerance) && mean + radius <= largest * (1.0 + tolerance))
   {
     return false;
   }
+  const Eigenvalues found = EigenvaluesOf(metric);
   const double a = std::clamp(found.Smaller, smallest, largest);
   const double b = std::clamp(found.Larger, smallest, largest);
   // Keep the eigenvectors: shrink the deviator in proportion to the difference of eigenvalues.

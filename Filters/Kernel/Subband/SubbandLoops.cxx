@@ -74,9 +74,9 @@ struct Row
 };
 
 //--- Fits ---------------------------------------------------------------------
-// Entries of a table for eight values of q, and how far each is on the way to the next one.
-HWY_INLINE void Locate(
-  const RadialTable& table, const double* q, std::uint64_t* entry, double* fraction)
+// Entries of a table for q at eight directions, and how far each is on the way to the next one.
+HWY_INLINE void Locate(const RadialTable& table, double mean, double radius, const double* cosines,
+  std::uint64_t* entry, double* fraction)
 {
   const hn::CappedTag<double, 8> d;
   const hn::RebindToUnsigned<decltype(d)> bits;
@@ -85,10 +85,10 @@ HWY_INLINE void Locate(
   const auto smallest = hn::Set(d, table.Smallest);
   for (std::size_t n = 0; n < 8; n += hn::MaxLanes(d))
   {
-    const auto any = hn::LoadU(d, q + n);
+    const auto q = hn::MulAdd(hn::Set(d, radius), hn::LoadU(d, cosines + n), hn::Set(d, mean));
     // In this way NaN, from an overflow, becomes the smallest.
-    const auto inside = hn::Min(
-      hn::IfThenElse(hn::Gt(any, smallest), any, smallest), hn::Set(d, table.Largest));
+    const auto inside =
+      hn::Min(hn::IfThenElse(hn::Gt(q, smallest), q, smallest), hn::Set(d, table.Largest));
     const auto found = hn::BitCast(bits, inside);
     hn::StoreU(hn::Sub(hn::ShiftRightSame(found, 52 - table.Bits), hn::Set(bits, table.First)),
       bits, entry + n);
@@ -138,14 +138,9 @@ HWY_INLINE void Fit(
   const double* factor = octant->Harmonics.data();
   for (int first = 0; first < octant->Count; first += 4)
   {
-    double q[8], fraction[8];
+    double fraction[8];
     std::uint64_t entry[8];
-    for (int n = 0; n < 4; ++n)
-    {
-      q[n] = mean + radius * octant->Cosines[first + n];
-      q[n + 4] = mean - radius * octant->Cosines[first + n];
-    }
-    Locate(table, q, entry, fraction);
+    Locate(table, mean, radius, octant->Cosines.data() + 2 * first, entry, fraction);
     for (int n = 0; n < 4; ++n, factor += K)
     {
       const R own = Interpolate<Stride>(table, entry[n], fraction[n]);
@@ -496,10 +491,12 @@ void DirectionFit::Prepare(
     Octant& octant = this->Octants[choice];
     octant.Count = choices[choice].first;
     octant.MostRatio = choices[choice].second;
+    octant.Cosines.resize(2 * octant.Count);
     for (int n = 0; n < octant.Count; ++n)
     {
       const double psi = Pi * (n + 0.5) / (4 * octant.Count);
-      octant.Cosines.push_back(std::cos(2.0 * psi));
+      octant.Cosines[n / 4 * 8 + n % 4] = std::cos(2.0 * psi);
+      octant.Cosines[n / 4 * 8 + n % 4 + 4] = -std::cos(2.0 * psi);
       for (int m = 0; m < K; ++m)
       {
         // 2 pi / N, at psi and -psi.

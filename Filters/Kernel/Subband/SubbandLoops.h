@@ -82,7 +82,7 @@ struct DirectionFit
     int Count = 0;
     /// The largest ratio of eigenvalues that they are enough for.
     double MostRatio = 0.0;
-    /// Of 2 psi.
+    /// Of 2 psi, and of pi - 2 psi, by fours: a multiple of four directions.
     std::vector<double> Cosines;
     /// Of each direction K factors.
     std::vector<double> Harmonics;

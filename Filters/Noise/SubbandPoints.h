@@ -154,7 +154,7 @@ private:
   void ComputeGamma(const SubbandPlanePoints::Shape& shape, std::size_t which, vtkIdType point,
     double* gamma) const;
   void FilterOctave(const SubbandPlanePoints::Shape& shape, std::size_t which, vtkIdType point,
-    int octave, const double* gamma, double* beta) const;
+    int octave, const double* gamma, float* weights) const;
 };
 } // namespace noise
 

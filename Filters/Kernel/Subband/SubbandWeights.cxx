@@ -344,9 +344,12 @@ void SubbandWeights::WeighBands(
 void SubbandWeights::LimitVariance(double most, double* weights) const
 {
   const double variance = this->GetVariance(weights);
-  const double scale = variance > most ? std::sqrt(most / variance) : 1.0;
-  std::for_each(weights, weights + this->Parameters.Pyramid.Components(),
-    [=](double& weight) { weight *= scale; });
+  if (variance > most)
+  {
+    const double scale = std::sqrt(most / variance);
+    std::for_each(weights, weights + this->Parameters.Pyramid.Components(),
+      [=](double& weight) { weight *= scale; });
+  }
 }
 
 double SubbandWeights::GetVariance(const double* gamma) const

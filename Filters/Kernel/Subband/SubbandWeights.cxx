@@ -42,6 +42,14 @@ bool IsFinite(const Eigen::Matrix2d& m)
   return std::isfinite(m(0, 0)) && std::isfinite(m(0, 1)) && std::isfinite(m(1, 1));
 }
 
+// Nothing passes a filter of this size; squares of larger ones overflow.
+Eigen::Matrix2d Bounded(const Eigen::Matrix2d& footprint)
+{
+  constexpr double most = 1e100;
+  const double found = footprint.cwiseAbs().maxCoeff();
+  return found > most ? Eigen::Matrix2d(footprint * (most / found)) : footprint;
+}
+
 /**
  * The least squares fit of a Gaussian by radial profiles. Both residuals take part, as they do in
  * images, so that a filter that changes nothing gets the factors one; noise has no residuals, so their
@@ -276,7 +284,7 @@ bool SubbandWeights::Antialias(const Eigen::Matrix2d& footprint, double* beta) c
     return false;
   }
   const double omega0 = 2.0 * Pi * this->Parameters.Pyramid.CenterFrequency();
-  this->WeighBands(this->Filter, footprint * (omega0 * omega0), beta);
+  this->WeighBands(this->Filter, Bounded(footprint) * (omega0 * omega0), beta);
   return true;
 }
 
@@ -288,7 +296,7 @@ bool SubbandWeights::AntialiasHigh(const Eigen::Matrix2d& footprint, double* bet
     return false;
   }
   const double omega0 = 2.0 * Pi * this->Parameters.Pyramid.CenterFrequency();
-  this->WeighBands(this->HighFilter, footprint * (omega0 * omega0), beta);
+  this->WeighBands(this->HighFilter, Bounded(footprint) * (omega0 * omega0), beta);
   return true;
 }
 

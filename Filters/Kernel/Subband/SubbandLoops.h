@@ -42,8 +42,8 @@ struct alignas(64) AlignedNumbers
   std::array<double, 8> Values = {};
 };
 
-/// A function of q = 4^c with a value for each of J scales, kept piecewise linear. Entries are found
-/// through the leading bits of q, which grow with it, linearly between powers of two.
+/// A function of q = 4^c with a value for each of J scales, kept piecewise linear. Entries are
+/// found through the leading bits of q, which grow with it, linearly between powers of two.
 struct RadialTable
 {
   /// Tabulate for c in [first, last], with 2^bits entries for each doubling of q.

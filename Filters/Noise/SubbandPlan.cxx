@@ -49,6 +49,18 @@ const steerable::SubbandAnisotropy* SubbandTileSets::GetAnisotropy(
 }
 
 //------------------------------------------------------------------------------
+const steerable::SubbandWeights* SubbandTileSets::GetWeights(
+  bool ofTexture, const steerable::SubbandWeightParameters& parameters)
+{
+  std::unique_ptr<steerable::SubbandWeights>& weights = this->Weights[ofTexture];
+  if (!weights || KeyOf(weights->GetParameters()) != KeyOf(parameters))
+  {
+    weights = std::make_unique<steerable::SubbandWeights>(parameters);
+  }
+  return weights.get();
+}
+
+//------------------------------------------------------------------------------
 SubbandSurface& SubbandPlan::GetSurface(SubbandBlock& block) const
 {
   if (!block.Surface)
@@ -322,7 +334,6 @@ void SubbandPlan::LayTiles()
   for (const int ofTexture : { 0, 1 })
   {
     this->NoTiles[ofTexture].Parameters = this->Layouts[ofTexture].Pyramid;
-    this->Solvers[ofTexture].reset();
   }
 }
 
@@ -330,18 +341,14 @@ void SubbandPlan::LayTiles()
 void SubbandPlan::AddLookups(bool ofTexture, int firstPlane, std::vector<SubbandLookup>& lookups)
 {
   const SubbandLayout& layout = this->Layouts[ofTexture];
-  if (!this->Solvers[ofTexture])
-  {
-    steerable::SubbandWeightParameters parameters;
-    parameters.Pyramid = layout.Pyramid;
-    // All of an image needs no weights, but the best filter.
-    parameters.Method =
-      this->IsWholeImage() ? steerable::WeightMethod::LeastSquares : this->Properties.Method;
-    parameters.FixedScale = layout.FixedScale;
-    parameters.RadialTriple = this->Properties.RadialTriple;
-    this->Solvers[ofTexture] = std::make_unique<steerable::SubbandWeights>(parameters);
-  }
-  const steerable::SubbandWeights* solver = this->Solvers[ofTexture].get();
+  steerable::SubbandWeightParameters parameters;
+  parameters.Pyramid = layout.Pyramid;
+  // All of an image needs no weights, but the best filter.
+  parameters.Method =
+    this->IsWholeImage() ? steerable::WeightMethod::LeastSquares : this->Properties.Method;
+  parameters.FixedScale = layout.FixedScale;
+  parameters.RadialTriple = this->Properties.RadialTriple;
+  const steerable::SubbandWeights* solver = this->Tiles->GetWeights(ofTexture, parameters);
   if (this->IsOfImage)
   {
     lookups.push_back({ &layout, solver, this->ImageTiles });

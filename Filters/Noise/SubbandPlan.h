@@ -110,7 +110,12 @@ struct SubbandTileSets
   const steerable::SubbandAnisotropy* GetAnisotropy(
     int orientations, steerable::WeightMethod method);
 
+  /// Weights on the texture or on planes, likewise.
+  const steerable::SubbandWeights* GetWeights(
+    bool ofTexture, const steerable::SubbandWeightParameters& parameters);
+
 private:
+  std::unique_ptr<steerable::SubbandWeights> Weights[2];
   std::unique_ptr<steerable::SubbandAnisotropy> Anisotropy;
   int AnisotropyOrientations = 0;
   steerable::WeightMethod AnisotropyMethod = steerable::WeightMethod::None;
@@ -224,7 +229,6 @@ private:
   const steerable::SubbandAnisotropy* Scale = nullptr; // null: as it is
   SubbandLayout Layouts[2];                            // on planes, on the texture
   steerable::SubbandTiles NoTiles[2];                  // of weights alone
-  std::unique_ptr<steerable::SubbandWeights> Solvers[2];
 };
 } // namespace noise
 

@@ -54,6 +54,15 @@ double AnisotropyAt(vtkDataArray* array, vtkIdType point, double usual)
 }
 
 //------------------------------------------------------------------------------
+std::array<double, 7> KeyOf(const steerable::SubbandWeightParameters& parameters)
+{
+  const steerable::SubbandParameters& pyramid = parameters.Pyramid;
+  return { double(pyramid.Orientations), double(pyramid.Scales), double(pyramid.TileSize),
+    pyramid.BandCenter, double(parameters.Method), double(parameters.RadialTriple),
+    parameters.FixedScale };
+}
+
+//------------------------------------------------------------------------------
 SubbandPointCounts& SubbandPointCounts::operator+=(const SubbandPointCounts& other)
 {
   this->Points += other.Points;
@@ -273,31 +282,33 @@ void SubbandPointWeights::Weigh(
     plane.Weights[octave].resize(components * points);
   }
   double gamma[steerable::MostSubbandComponents];
-  double beta[steerable::MostSubbandComponents];
   for (std::size_t n = 0; n < points; ++n)
   {
     const vtkIdType point = first + plane.Points[n];
     this->ComputeGamma(plane.Shapes[n], which, point, gamma);
     for (std::size_t octave = known; octave < octaves; ++octave)
     {
-      this->FilterOctave(plane.Shapes[n], which, point, static_cast<int>(octave), gamma, beta);
-      std::copy(beta, beta + components, plane.Weights[octave].begin() + n * components);
+      this->FilterOctave(plane.Shapes[n], which, point, static_cast<int>(octave), gamma,
+        plane.Weights[octave].data() + n * components);
     }
   }
 }
 
 //------------------------------------------------------------------------------
-// Weights before what each octave adds.
+// Weights of a plane as if it were the only one, before what each octave adds.
 void SubbandPointWeights::ComputeGamma(const SubbandPlanePoints::Shape& shape, std::size_t which,
   vtkIdType point, double* gamma) const
 {
   const SubbandLookup& lookup = this->Lookups[which];
   const int components = lookup.Tiles->Components();
   std::fill(gamma + lookup.Layout->Pyramid.Components(), gamma + components, 0.0);
-  lookup.Weights->Compute(Symmetric(shape.Metric), gamma);
   if (this->WholeImage)
   {
     std::fill_n(gamma, components, 1.0);
+  }
+  else
+  {
+    lookup.Weights->Compute(Symmetric(shape.Metric), gamma);
   }
   if (this->OwnWeights)
   {
@@ -308,21 +319,18 @@ void SubbandPointWeights::ComputeGamma(const SubbandPlanePoints::Shape& shape, s
       gamma[c] = std::isfinite(own) ? own / shape.Blend : 0.0;
     }
   }
-  for (int c = 0; c < components; ++c)
-  {
-    gamma[c] *= shape.Blend;
-  }
 }
 
 //------------------------------------------------------------------------------
-// Weights of an octave: those before, faded where points are too far apart for its bands, times factors.
+// Weights of an octave: those before, faded where points are too far apart for its bands, times
+// factors and the plane's share.
 void SubbandPointWeights::FilterOctave(const SubbandPlanePoints::Shape& shape, std::size_t which,
-  vtkIdType point, int octave, const double* gamma, double* beta) const
+  vtkIdType point, int octave, const double* gamma, float* weights) const
 {
   const SubbandLookup& lookup = this->Lookups[which];
   const int bands = lookup.Layout->Pyramid.Components();
   const int components = lookup.Tiles->Components();
-  std::fill_n(beta, components, 1.0);
+  double beta[steerable::MostSubbandComponents];
   if (this->AntiAlias)
   {
     const Eigen::Matrix2d footprint = Symmetric(shape.Footprint) * std::ldexp(1.0, 2 * octave);
@@ -330,15 +338,20 @@ void SubbandPointWeights::FilterOctave(const SubbandPlanePoints::Shape& shape, s
     if (components > bands)
     {
       lookup.Weights->AntialiasHigh(footprint, beta + bands);
+      beta[components - 1] = 1.0;
+    }
+    for (int c = 0; c < components; ++c)
+    {
+      beta[c] *= gamma[c];
+    }
+    if (this->Limited)
+    {
+      lookup.Weights->LimitVariance(1.0, beta);
     }
   }
-  for (int c = 0; c < components; ++c)
+  else
   {
-    beta[c] *= gamma[c];
-  }
-  if (this->AntiAlias && this->Limited)
-  {
-    lookup.Weights->LimitVariance(shape.Blend * shape.Blend, beta);
+    std::copy(gamma, gamma + components, beta);
   }
   if (this->Factors)
   {
@@ -348,6 +361,10 @@ void SubbandPointWeights::FilterOctave(const SubbandPlanePoints::Shape& shape, s
     {
       beta[c] *= this->Factors->GetComponent(point, octave * orientations + c % orientations);
     }
+  }
+  for (int c = 0; c < components; ++c)
+  {
+    weights[c] = static_cast<float>(shape.Blend * beta[c]);
   }
 }
 
@@ -359,12 +376,9 @@ std::vector<double> SubbandPointWeights::GetKey() const
     double(this->NeedsDistortion), double(this->Seams != nullptr) };
   for (const SubbandLookup& lookup : this->Lookups)
   {
-    const steerable::SubbandWeightParameters& weights = lookup.Weights->GetParameters();
-    const steerable::SubbandParameters& pyramid = weights.Pyramid;
-    key.insert(key.end(),
-      { double(pyramid.Orientations), double(pyramid.Scales), double(pyramid.TileSize),
-        pyramid.BandCenter, double(weights.Method), double(weights.RadialTriple),
-        weights.FixedScale, lookup.Layout->Repeats, double(lookup.Tiles->Residuals) });
+    const std::array<double, 7> weights = KeyOf(lookup.Weights->GetParameters());
+    key.insert(key.end(), weights.begin(), weights.end());
+    key.insert(key.end(), { lookup.Layout->Repeats, double(lookup.Tiles->Residuals) });
   }
   if (this->Factors)
   {

@@ -21,6 +21,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -30,6 +31,9 @@ class vtkUnsignedCharArray;
 namespace noise
 {
 class SubbandSeams;
+
+/// All that weights with these parameters depend on, for comparison.
+std::array<double, 7> KeyOf(const steerable::SubbandWeightParameters& parameters);
 
 /// What points are looked up in and weighted with on the texture or in a planar projection.
 struct SubbandLookup
@@ -150,7 +154,7 @@ private:
   void ComputeGamma(const SubbandPlanePoints::Shape& shape, std::size_t which, vtkIdType point,
     double* gamma) const;
   void FilterOctave(const SubbandPlanePoints::Shape& shape, std::size_t which, vtkIdType point,
-    int octave, const double* gamma, double* beta) const;
+    int octave, const double* gamma, float* weights) const;
 };
 } // namespace noise
 

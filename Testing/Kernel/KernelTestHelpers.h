@@ -5,10 +5,9 @@
 #define KernelTestHelpers_h
 
 #include "MetricTensor.h"
+#include "SimdLevels.h"
 #include "SteerableNoise.h"
 #include "SteerableNoiseReference.h"
-
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -172,31 +171,6 @@ double LargestDifference(
 {
   return LargestDifference(
     FastNoise<N>(parameters, samples, steering), SlowNoise<N>(parameters, samples, steering));
-}
-
-/**
- * While it lives, Highway takes no better SIMD level than this one. Levels come from SimdLevels(),
- * the best first.
- */
-class SimdLevel
-{
-public:
-  explicit SimdLevel(std::int64_t target)
-  {
-    // Better levels have lower bits. Worse ones stay: the kernel is not compiled for all of them.
-    hwy::SetSupportedTargetsForTest(hwy::SupportedTargets() & ~(target - 1));
-  }
-  ~SimdLevel() { hwy::SetSupportedTargetsForTest(0); }
-  SimdLevel(const SimdLevel&) = delete;
-  SimdLevel& operator=(const SimdLevel&) = delete;
-};
-
-inline std::vector<std::int64_t> SimdLevels()
-{
-  std::vector<std::int64_t> levels = hwy::SupportedAndGeneratedTargets();
-  // The kernel is not compiled for this one and would take the scalar level once more.
-  levels.erase(std::remove(levels.begin(), levels.end(), HWY_SSSE3), levels.end());
-  return levels;
 }
 
 /// Noise of an image whose vectors are a function of the world place of a sample.

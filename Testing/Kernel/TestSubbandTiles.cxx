@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "SimdLevels.h"
 #include "Subband/SubbandTiles.h"
 
 #include <Eigen/Core>
@@ -457,6 +458,72 @@ TEST(SubbandTiles, SumIsTheWeightedSumOfBands)
       const double sum =
         std::inner_product(bands, bands + components, weights.data() + p * components, 0.0);
       EXPECT_NEAR(noise[p], sum, 1e-5);
+    }
+  }
+}
+
+// Texels of every number of floats that there is, at all SIMD levels.
+TEST(SubbandTiles, EveryNumberOfComponentsIsSummedAtEveryLevel)
+{
+  const int size = 16;
+  for (const int residuals : { 0, 1 })
+  {
+    for (const int K : { 3, 4, 6, 8 })
+    {
+      for (int J = 1; J <= 6; ++J)
+      {
+        SubbandTiles tiles;
+        tiles.Parameters.Orientations = K;
+        tiles.Parameters.Scales = J;
+        tiles.Parameters.TileSize = size;
+        tiles.Residuals = residuals * (K + 1);
+        const int components = tiles.Components();
+        tiles.Values.resize(size * size * components);
+        for (std::size_t n = 0; n < tiles.Values.size(); ++n)
+        {
+          tiles.Values[n] = static_cast<float>(std::sin(1.3 * n));
+        }
+        const double u = 0.99, v = -0.4;
+        const double x = u * size - std::floor(u * size), y = v * size - std::floor(v * size);
+        const auto tap = [](int n, double t)
+        {
+          const double weights[4] = { 0.5 * t * (t * (2.0 - t) - 1.0),
+            0.5 * (t * t * (3.0 * t - 5.0) + 2.0), 0.5 * t * (t * (4.0 - 3.0 * t) + 1.0),
+            0.5 * t * t * (t - 1.0) };
+          return weights[n];
+        };
+        std::vector<double> expected(components, 0.0);
+        std::vector<float> weights(2 * components, 0.0f);
+        double sum = 0.0;
+        for (int c = 0; c < components; ++c)
+        {
+          for (int n = 0; n < 16; ++n)
+          {
+            const int column = static_cast<int>(std::floor(u * size)) - 1 + n % 4;
+            const int row = static_cast<int>(std::floor(v * size)) - 1 + n / 4;
+            expected[c] += tap(n % 4, x) * tap(n / 4, y) *
+              tiles.Texel((column + 2 * size) % size, (row + 2 * size) % size)[c];
+          }
+          weights[components + c] = 0.5f + 0.01f * static_cast<float>(c);
+          sum += weights[components + c] * expected[c];
+        }
+        for (const std::int64_t target : steerable::testing::SimdLevels())
+        {
+          const steerable::testing::SimdLevel level(target);
+          SCOPED_TRACE(std::to_string(components) + ", " + hwy::TargetName(target));
+          std::vector<float> bands(components);
+          SampleSubbands(tiles, TileLookup::CatmullRom, u, v, bands.data());
+          for (int c = 0; c < components; ++c)
+          {
+            EXPECT_NEAR(bands[c], expected[c], 1e-6);
+          }
+          const double uv[4] = { 0.1, 0.2, u, v };
+          float noise[2];
+          SumSubbands(tiles, TileLookup::CatmullRom, 2, uv, weights.data(), noise);
+          EXPECT_EQ(noise[0], 0.0f);
+          EXPECT_NEAR(noise[1], sum, 1e-5);
+        }
+      }
     }
   }
 }

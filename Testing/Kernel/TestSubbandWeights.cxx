@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
+#include "SimdLevels.h"
 #include "Subband/SubbandTiles.h"
 #include "Subband/SubbandWeights.h"
 #include "Subband/SurfaceMetric.h"
@@ -107,7 +108,7 @@ std::string Name(WeightMethod method)
 // Record a measured figure in the test's XML report, and check it.
 void ExpectAtMost(const std::string& name, double value, double limit)
 {
-  testing::Test::RecordProperty(name, std::to_string(value) + " of " + std::to_string(limit));
+  ::testing::Test::RecordProperty(name, std::to_string(value) + " of " + std::to_string(limit));
   EXPECT_LE(value, limit) << name;
 }
 } // namespace
@@ -324,6 +325,53 @@ TEST(SubbandWeights, TablesAreAccurate)
   }
 }
 
+// That sum for pyramids of all sizes, at all SIMD levels.
+TEST(SubbandWeights, EveryPyramidAndLevelHasTheSum)
+{
+  const int directions = 256;
+  for (const int K : { 3, 4, 6, 8 })
+  {
+    for (int J = 1; J <= 6; ++J)
+    {
+      SubbandWeightParameters parameters = Parameters(WeightMethod::PowerMatched, K, J);
+      parameters.Pyramid.TileSize = 512;
+      const SubbandWeights solver(parameters);
+      const double ratio = std::min(4.0, std::exp2(J - 1.0));
+      for (const double angle : { 0.0, 0.3, 1.9 })
+      {
+        // From the finest scale on.
+        const Eigen::Matrix2d mapping = Rotation(angle) *
+          Eigen::Vector2d(ratio, 1.0).asDiagonal() / solver.GetParameters().Pyramid.CenterFrequency();
+        Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(K, J);
+        for (int n = 0; n < directions; ++n)
+        {
+          const double theta = Pi * n / directions;
+          const Eigen::Vector2d e(std::cos(theta), std::sin(theta));
+          const double c = std::log2(
+            (mapping.transpose() * e).norm() * solver.GetParameters().Pyramid.CenterFrequency());
+          for (int i = 0; i < K; ++i)
+          {
+            for (int j = 0; j < J; ++j)
+            {
+              sum(i, j) += AngularFilter(i, K, theta) * std::sqrt(PowerOverlap(c - j));
+            }
+          }
+        }
+        Eigen::MatrixXd expected = AngularGram(K).inverse() * sum;
+        expected /= std::sqrt(SubbandVariance(solver.GetParameters().Pyramid, expected));
+        for (const std::int64_t target : steerable::testing::SimdLevels())
+        {
+          const steerable::testing::SimdLevel level(target);
+          const Weights gamma = Gamma(solver, mapping * mapping.transpose());
+          const Eigen::Map<const Eigen::MatrixXd> found(gamma.data(), K, J);
+          EXPECT_LE((found - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff(), 20e-6)
+            << "K " << K << ", J " << J << ", " << hwy::TargetName(target) << ", " << angle;
+        }
+      }
+    }
+  }
+}
+
 TEST(SubbandWeights, RingOfOneScale)
 {
   // An isotropic metric at the centre of a scale needs that scale alone.
@@ -525,6 +573,42 @@ TEST(SubbandWeights, AntialiasingKeepsAllOrNothingAtTheEnds)
       EXPECT_LE(LargestDifference(high, Weights(8, 0.0)), 1e-3);
       EXPECT_FALSE(solver.AntialiasHigh(
         std::numeric_limits<double>::quiet_NaN() * identity, high.data()));
+    }
+  }
+}
+
+// Directions that are counted from fixed axes hit or miss the thin end of a long footprint.
+TEST(SubbandWeights, LongFootprintsFadeAlikeInAllDirections)
+{
+  const SubbandWeights solver(Parameters(WeightMethod::LeastSquares));
+  for (const double length : { 4.0, 16.0, 256.0, 4096.0 })
+  {
+    std::vector<Eigen::Vector4d> sums;
+    for (const double angle : { 0.0, 0.011, 0.3, 1.0, Pi / 2 })
+    {
+      const Eigen::Matrix2d axes = Rotation(angle);
+      const Eigen::Vector2d sizes(length * length, 0.01);
+      const Weights beta =
+        Beta(solver, axes * sizes.asDiagonal() * axes.transpose() / (256.0 * 256.0));
+      sums.push_back(
+        Eigen::Map<const Eigen::Matrix<double, 8, 4>>(beta.data()).colwise().sum().transpose());
+      EXPECT_LE((sums.back() - sums.front()).cwiseAbs().maxCoeff(), 1e-9) << length << ", " << angle;
+    }
+  }
+}
+
+TEST(SubbandWeights, NothingPassesAFootprintWithoutBounds)
+{
+  for (const WeightMethod method : { WeightMethod::LeastSquares, WeightMethod::Heuristic })
+  {
+    const SubbandWeights solver(Parameters(method));
+    for (const double size : { 1e20, 1e160, 1e305 })
+    {
+      const Eigen::Matrix2d footprint = size * Eigen::Vector2d(1.0, 0.5).asDiagonal();
+      EXPECT_LE(LargestDifference(Beta(solver, footprint), Weights(32, 0.0)), 1e-3) << size;
+      Weights high(8);
+      EXPECT_TRUE(solver.AntialiasHigh(footprint, high.data()));
+      EXPECT_LE(LargestDifference(high, Weights(8, 0.0)), 1e-3) << size;
     }
   }
 }

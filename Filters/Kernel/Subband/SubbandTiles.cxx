@@ -3,6 +3,7 @@
 #include "Subband/SubbandTiles.h"
 
 #include "LatticeHash.h"
+#include "Subband/SubbandLoops.h"
 
 #include <unsupported/Eigen/FFT>
 
@@ -77,132 +78,6 @@ double ImageFilter(const SubbandParameters& parameters, int c, double kx, double
   return low || residual == 0.0
     ? residual
     : residual * AngularFilter(c % orientations, orientations, std::atan2(ky, kx));
-}
-
-// Two texels per axis, or four, with their weights.
-struct AxisTaps
-{
-  int Count;
-  int Texel[4];
-  float Weight[4];
-};
-
-AxisTaps LocateTaps(TileLookup lookup, double coordinate, int size)
-{
-  const double position = (coordinate - std::floor(coordinate)) * size;
-  // A coordinate that is not finite gives NaN, not a read outside the tile.
-  const double cell = position >= 0.0 ? std::floor(position) : 0.0;
-  const float t = static_cast<float>(position - cell);
-
-  AxisTaps taps;
-  int first = static_cast<int>(cell);
-  if (lookup == TileLookup::Bilinear)
-  {
-    taps.Count = 2;
-    taps.Weight[0] = 1.0f - t;
-    taps.Weight[1] = t;
-  }
-  else
-  {
-    taps.Count = 4;
-    taps.Weight[0] = 0.5f * t * (t * (2.0f - t) - 1.0f);
-    taps.Weight[1] = 0.5f * (t * t * (3.0f * t - 5.0f) + 2.0f);
-    taps.Weight[2] = 0.5f * t * (t * (4.0f - 3.0f * t) + 1.0f);
-    taps.Weight[3] = 0.5f * t * t * (t - 1.0f);
-    --first;
-  }
-  for (int n = 0; n < taps.Count; ++n)
-  {
-    const int texel = first + n;
-    taps.Texel[n] = texel < 0 ? texel + size : texel < size ? texel : texel - size;
-  }
-  return taps;
-}
-
-// The texels around a point, with their weights.
-struct Neighborhood
-{
-  int Count = 0;
-  const float* Texel[16];
-  float Weight[16];
-};
-
-Neighborhood Gather(const SubbandTiles& tiles, TileLookup lookup, double u, double v)
-{
-  const AxisTaps x = LocateTaps(lookup, u, tiles.Parameters.TileSize);
-  const AxisTaps y = LocateTaps(lookup, v, tiles.Parameters.TileSize);
-  Neighborhood points;
-  for (int b = 0; b < y.Count; ++b)
-  {
-    for (int a = 0; a < x.Count; ++a)
-    {
-      points.Texel[points.Count] = tiles.Texel(x.Texel[a], y.Texel[b]);
-      points.Weight[points.Count] = x.Weight[a] * y.Weight[b];
-      ++points.Count;
-    }
-  }
-  return points;
-}
-
-// Interpolate Width bands from `first` on. Width is known to the compiler, which keeps the sums in
-// vector registers: this is where the time of subband noise goes.
-template <int Width>
-inline void Interpolate(const Neighborhood& points, int first, float* bands)
-{
-  float sum[Width] = {};
-  for (int n = 0; n < points.Count; ++n)
-  {
-    const float* texel = points.Texel[n] + first;
-    const float weight = points.Weight[n];
-    for (int c = 0; c < Width; ++c)
-    {
-      sum[c] += weight * texel[c];
-    }
-  }
-  for (int c = 0; c < Width; ++c)
-  {
-    bands[c] = sum[c];
-  }
-}
-
-void InterpolateAll(const Neighborhood& points, int components, float* bands)
-{
-  int c = 0;
-  for (; c + 16 <= components; c += 16)
-  {
-    Interpolate<16>(points, c, bands + c);
-  }
-  for (; c + 4 <= components; c += 4)
-  {
-    Interpolate<4>(points, c, bands + c);
-  }
-  for (; c + 2 <= components; c += 2)
-  {
-    Interpolate<2>(points, c, bands + c);
-  }
-  if (c < components)
-  {
-    Interpolate<1>(points, c, bands + c);
-  }
-}
-
-// In four interleaved partial sums, which the compiler may compute side by side.
-float Dot(const float* a, const float* b, int count)
-{
-  float partial[4] = {};
-  int c = 0;
-  for (; c + 4 <= count; c += 4)
-  {
-    for (int lane = 0; lane < 4; ++lane)
-    {
-      partial[lane] += a[c + lane] * b[c + lane];
-    }
-  }
-  for (; c < count; ++c)
-  {
-    partial[0] += a[c] * b[c];
-  }
-  return (partial[0] + partial[1]) + (partial[2] + partial[3]);
 }
 
 } // namespace
@@ -477,19 +352,13 @@ std::array<double, 2> TileOffset(std::uint32_t index, std::uint32_t seed)
 
 void SampleSubbands(const SubbandTiles& tiles, TileLookup lookup, double u, double v, float* bands)
 {
-  InterpolateAll(Gather(tiles, lookup, u, v), tiles.Components(), bands);
+  SampleTiles(tiles, lookup, u, v, bands);
 }
 
 void SumSubbands(const SubbandTiles& tiles, TileLookup lookup, std::size_t count, const double* uv,
   const float* weights, float* noise)
 {
-  const int components = tiles.Components();
-  float bands[MostSubbandComponents];
-  for (std::size_t p = 0; p < count; ++p)
-  {
-    SampleSubbands(tiles, lookup, uv[2 * p], uv[2 * p + 1], bands);
-    noise[p] = Dot(bands, weights + p * components, components);
-  }
+  SumTiles(tiles, lookup, count, uv, weights, noise);
 }
 
 } // namespace steerable

@@ -5,10 +5,7 @@
 #include <Eigen/LU>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -18,7 +15,6 @@ namespace
 {
 constexpr double Pi = 3.14159265358979323846;
 constexpr double Ln2 = 0.693147180559945309417;
-constexpr int MaximumScales = 6;
 
 // Entries of the tables per doubling of q. Weights are right to 3e-6 of the largest, antialiasing
 // to 1e-4.
@@ -46,19 +42,12 @@ bool IsFinite(const Eigen::Matrix2d& m)
   return std::isfinite(m(0, 0)) && std::isfinite(m(0, 1)) && std::isfinite(m(1, 1));
 }
 
-// q's bits as an integer grow with q, linearly between powers of two.
-std::uint64_t BitsOf(double q)
+// Nothing passes a filter of this size; squares of larger ones overflow.
+Eigen::Matrix2d Bounded(const Eigen::Matrix2d& footprint)
 {
-  std::uint64_t bits;
-  std::memcpy(&bits, &q, sizeof bits);
-  return bits;
-}
-
-double FromBits(std::uint64_t bits)
-{
-  double q;
-  std::memcpy(&q, &bits, sizeof q);
-  return q;
+  constexpr double most = 1e100;
+  const double found = footprint.cwiseAbs().maxCoeff();
+  return found > most ? Eigen::Matrix2d(footprint * (most / found)) : footprint;
 }
 
 /**
@@ -112,26 +101,6 @@ private:
   Eigen::MatrixXd Dual;
   Eigen::VectorXd SquaredRadius;
 };
-
-// K is known to the compiler, which keeps the K sums in vector registers.
-template <int K>
-void SumDirections(
-  const double* angularDual, const double* radial, int directions, int scales, double* weights)
-{
-  for (int j = 0; j < scales; ++j)
-  {
-    double sum[K] = {};
-    for (int n = 0; n < directions; ++n)
-    {
-      const double value = radial[n * MaximumScales + j];
-      for (int i = 0; i < K; ++i)
-      {
-        sum[i] += angularDual[n * K + i] * value;
-      }
-    }
-    std::copy(sum, sum + K, weights + j * K);
-  }
-}
 
 // Where the heuristic probes a band, in octaves from its centre, and how much each probe counts.
 struct RadialProbe
@@ -217,30 +186,35 @@ SubbandWeights::SubbandWeights(const SubbandWeightParameters& parameters)
   parameters.Validate();
   const int orientations = parameters.Pyramid.Orientations;
   const int scales = parameters.Pyramid.Scales;
-  this->Angular = AngularGram(orientations);
-  this->Radial = RadialGram(scales);
-
-  // A fit looks at the metric in many directions, the heuristic along the axes of the bands.
-  const bool fits = parameters.Method == WeightMethod::LeastSquares ||
+  this->SmallestMetric = std::pow(parameters.Pyramid.CenterFrequency(), -2.0);
+  this->LargestMetric = std::ldexp(this->SmallestMetric, 2 * (scales - 1));
+  const Eigen::MatrixXd angular = AngularGram(orientations);
+  const Eigen::MatrixXd radial = RadialGram(scales);
+  this->Power.Prepare(angular, radial);
+  this->Fits = parameters.Method == WeightMethod::LeastSquares ||
     parameters.Method == WeightMethod::PowerMatched;
-  this->DirectionCount = fits ? FitDirections : orientations;
-  Eigen::MatrixXd filters(orientations, this->DirectionCount);
-  for (int n = 0; n < this->DirectionCount; ++n)
+  for (int i = 0; i < orientations; ++i)
   {
-    const double theta = Pi * n / this->DirectionCount;
+    const double theta = Pi * i / orientations;
     const double c = std::cos(theta), s = std::sin(theta);
     this->Squares.push_back({ c * c, 2.0 * c * s, s * s });
-    for (int i = 0; i < orientations; ++i)
-    {
-      filters(i, n) = AngularFilter(i, orientations, theta);
-    }
   }
 
   const int last = scales - 1;
   const int filterFirst = -FilterMarginBelow, filterLast = scales + FilterMarginAbove;
-  if (fits)
+  if (this->Fits)
   {
-    this->AngularDual = this->Angular.inverse() * filters * (2.0 * Pi / this->DirectionCount);
+    const Eigen::VectorXd dual = angular.inverse().col(0);
+    this->Fit.Prepare(orientations,
+      [&](double theta)
+      {
+        double sum = 0.0;
+        for (int i = 0; i < orientations; ++i)
+        {
+          sum += dual(i) * AngularFilter(i, orientations, theta);
+        }
+        return sum;
+      });
     const GaussianFit fit(scales);
     this->Filter.Fill(
       filterFirst, filterLast, FilterBits, [&](double c) { return fit(std::exp2(2.0 * c)); });
@@ -259,7 +233,7 @@ SubbandWeights::SubbandWeights(const SubbandWeightParameters& parameters)
   }
   if (parameters.Method == WeightMethod::LeastSquares)
   {
-    const Eigen::MatrixXd radialDual = this->Radial.inverse();
+    const Eigen::MatrixXd radialDual = radial.inverse();
     const Eigen::MatrixXd slopes = RadialSlopeGram(scales);
     this->Target.Fill(0, last, TargetBits,
       [&](double c)
@@ -310,7 +284,7 @@ bool SubbandWeights::Antialias(const Eigen::Matrix2d& footprint, double* beta) c
     return false;
   }
   const double omega0 = 2.0 * Pi * this->Parameters.Pyramid.CenterFrequency();
-  this->WeighBands(this->Filter, footprint * (omega0 * omega0), beta);
+  this->WeighBands(this->Filter, Bounded(footprint) * (omega0 * omega0), beta);
   return true;
 }
 
@@ -322,22 +296,25 @@ bool SubbandWeights::AntialiasHigh(const Eigen::Matrix2d& footprint, double* bet
     return false;
   }
   const double omega0 = 2.0 * Pi * this->Parameters.Pyramid.CenterFrequency();
-  this->WeighBands(this->HighFilter, footprint * (omega0 * omega0), beta);
+  this->WeighBands(this->HighFilter, Bounded(footprint) * (omega0 * omega0), beta);
   return true;
 }
 
 bool SubbandWeights::ClampMetric(Eigen::Matrix2d& metric) const
 {
-  const SubbandParameters& pyramid = this->Parameters.Pyramid;
-  const double smallest = std::pow(pyramid.CenterFrequency(), -2.0);
-  const double largest = std::ldexp(smallest, 2 * (pyramid.Scales - 1));
-  const Eigenvalues found = EigenvaluesOf(metric);
+  const double smallest = this->SmallestMetric;
+  const double largest = this->LargestMetric;
   // A metric built to lie on the limit may miss it by rounding, which is no change worth reporting.
   constexpr double tolerance = 1e-12;
-  if (found.Smaller >= smallest * (1.0 - tolerance) && found.Larger <= largest * (1.0 + tolerance))
+  // Most lie inside, far from overflow: a plain root is enough to tell.
+  const double mean = 0.5 * (metric(0, 0) + metric(1, 1));
+  const double half = 0.5 * (metric(0, 0) - metric(1, 1));
+  const double radius = std::sqrt(half * half + metric(0, 1) * metric(0, 1));
+  if (mean - radius >= smallest * (1.0 - tolerance) && mean + radius <= largest * (1.0 + tolerance))
   {
     return false;
   }
+  const Eigenvalues found = EigenvaluesOf(metric);
   const double a = std::clamp(found.Smaller, smallest, largest);
   const double b = std::clamp(found.Larger, smallest, largest);
   // Keep the eigenvectors: shrink the deviator in proportion to the difference of eigenvalues.
@@ -349,106 +326,44 @@ bool SubbandWeights::ClampMetric(Eigen::Matrix2d& metric) const
   return true;
 }
 
-void SubbandWeights::RadialTable::Fill(
-  int first, int last, int bits, const std::function<Eigen::VectorXd(double c)>& function)
-{
-  this->Smallest = std::ldexp(1.0, 2 * first);
-  this->Largest = std::ldexp(1.0, 2 * last);
-  this->Shift = 52 - bits;
-  const std::uint64_t begin = BitsOf(this->Smallest) >> this->Shift;
-  // One more than the last, to interpolate towards.
-  const std::uint64_t end = (BitsOf(this->Largest) >> this->Shift) + 2;
-  this->Rows.clear();
-  for (std::uint64_t entry = begin; entry < end; ++entry)
-  {
-    const Eigen::VectorXd row = function(0.5 * std::log2(FromBits(entry << this->Shift)));
-    this->Rows.insert(this->Rows.end(), row.data(), row.data() + row.size());
-    this->Width = static_cast<int>(row.size());
-  }
-}
-
-void SubbandWeights::RadialTable::Interpolate(double q, double* values) const
-{
-  // In this order NaN, from an overflow, becomes the smallest.
-  const std::uint64_t bits = BitsOf(std::min(this->Largest, std::max(this->Smallest, q)));
-  const std::uint64_t entry = (bits >> this->Shift) - (BitsOf(this->Smallest) >> this->Shift);
-  const std::uint64_t rest = bits & ((std::uint64_t{ 1 } << this->Shift) - 1);
-  const double fraction =
-    static_cast<double>(rest) / static_cast<double>(std::uint64_t{ 1 } << this->Shift);
-  const double* row = this->Rows.data() + entry * this->Width;
-  const double* next = row + this->Width;
-  for (int j = 0; j < this->Width; ++j)
-  {
-    values[j] = row[j] + fraction * (next[j] - row[j]);
-  }
-}
-
 void SubbandWeights::WeighBands(
   const RadialTable& table, const Eigen::Matrix2d& scaledMetric, double* weights) const
 {
-  const int orientations = this->Parameters.Pyramid.Orientations;
-  const int scales = table.GetWidth();
-  double radial[FitDirections * MaximumScales];
-  for (int n = 0; n < this->DirectionCount; ++n)
+  const double entries[3] = { scaledMetric(0, 0), scaledMetric(0, 1), scaledMetric(1, 1) };
+  if (this->Fits)
   {
-    const auto& square = this->Squares[n];
-    const double q = square[0] * scaledMetric(0, 0) + square[1] * scaledMetric(0, 1) +
-      square[2] * scaledMetric(1, 1);
-    table.Interpolate(q, radial + n * MaximumScales);
-  }
-
-  if (this->AngularDual.size() == 0)
-  {
-    for (int i = 0; i < orientations; ++i)
-    {
-      for (int j = 0; j < scales; ++j)
-      {
-        weights[j * orientations + i] = radial[i * MaximumScales + j];
-      }
-    }
+    FitBands(this->Fit, table, entries, weights);
     return;
   }
-  const double* dual = this->AngularDual.data();
-  switch (orientations)
+  const int orientations = this->Parameters.Pyramid.Orientations;
+  for (int i = 0; i < orientations; ++i)
   {
-    case 3:
-      return SumDirections<3>(dual, radial, this->DirectionCount, scales, weights);
-    case 4:
-      return SumDirections<4>(dual, radial, this->DirectionCount, scales, weights);
-    case 6:
-      return SumDirections<6>(dual, radial, this->DirectionCount, scales, weights);
-    default:
-      return SumDirections<8>(dual, radial, this->DirectionCount, scales, weights);
+    const auto& square = this->Squares[i];
+    const double q = square[0] * entries[0] + square[1] * entries[1] + square[2] * entries[2];
+    double values[MaximumScales];
+    table.Interpolate(q, values);
+    for (int j = 0; j < table.Width; ++j)
+    {
+      weights[j * orientations + i] = values[j];
+    }
   }
 }
 
 void SubbandWeights::LimitVariance(double most, double* weights) const
 {
   const double variance = this->GetVariance(weights);
-  const double scale = variance > most ? std::sqrt(most / variance) : 1.0;
-  std::for_each(weights, weights + this->Parameters.Pyramid.Components(),
-    [=](double& weight) { weight *= scale; });
+  if (variance > most)
+  {
+    const double scale = std::sqrt(most / variance);
+    std::for_each(weights, weights + this->Parameters.Pyramid.Components(),
+      [=](double& weight) { weight *= scale; });
+  }
 }
 
 double SubbandWeights::GetVariance(const double* gamma) const
 {
-  const SubbandParameters& pyramid = this->Parameters.Pyramid;
-  using Weights =
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 8, MaximumScales>;
-  const Eigen::Map<const Eigen::MatrixXd> weights(gamma, pyramid.Orientations, pyramid.Scales);
-  const Weights filtered = this->Angular.lazyProduct(weights);
-
-  // tr(gamma^T Q_ang gamma Q_rad); Q_rad is tridiagonal.
-  double trace = 0.0;
-  for (int j = 0; j < pyramid.Scales; ++j)
-  {
-    trace += this->Radial(j, j) * filtered.col(j).dot(weights.col(j));
-    if (j + 1 < pyramid.Scales)
-    {
-      trace += 2.0 * this->Radial(j, j + 1) * filtered.col(j).dot(weights.col(j + 1));
-    }
-  }
-  return pyramid.BandCenter * pyramid.BandCenter * trace;
+  const double center = this->Parameters.Pyramid.BandCenter;
+  return center * center * PowerOf(this->Power, gamma);
 }
 
 double DistortionRatio(const Eigen::Matrix2d& metric)

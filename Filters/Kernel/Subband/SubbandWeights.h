@@ -24,11 +24,11 @@
 #define SubbandWeights_h
 
 #include "Subband/SubbandFilters.h"
+#include "Subband/SubbandLoops.h"
 
 #include <Eigen/Core>
 
 #include <array>
-#include <functional>
 #include <vector>
 
 namespace steerable
@@ -111,42 +111,20 @@ public:
   const SubbandWeightParameters& GetParameters() const { return this->Parameters; }
 
 private:
-  // Directions over half a circle in the sum above: enough for 8:1.
-  static constexpr int FitDirections = 64;
-
-  // A function of c with J values, kept piecewise linear in q = 4^c. Entries are found through the
-  // leading bits of q, so no logarithm is taken.
-  class RadialTable
-  {
-  public:
-    // Tabulate for c in [first, last], with 2^bits entries for each doubling of q.
-    void Fill(
-      int first, int last, int bits, const std::function<Eigen::VectorXd(double c)>& function);
-    // Write the J values at q, clamped to the range of the table.
-    void Interpolate(double q, double* values) const;
-    int GetWidth() const { return this->Width; }
-
-  private:
-    double Smallest = 0.0, Largest = 0.0;
-    int Shift = 0;
-    int Width = 0;
-    std::vector<double> Rows;
-  };
-
   // gamma and beta alike: the values of a table along each direction, joined to weights of bands.
   void WeighBands(
     const RadialTable& table, const Eigen::Matrix2d& scaledMetric, double* weights) const;
   double GetVariance(const double* gamma) const;
 
   SubbandWeightParameters Parameters;
-  int DirectionCount = 0;
-  std::vector<std::array<double, 3>> Squares; // cos^2, 2 cos sin and sin^2 of each direction
-  Eigen::MatrixXd AngularDual;                // A, K x directions; empty where nothing is fitted
-  Eigen::MatrixXd Angular;                    // Q_ang
-  Eigen::MatrixXd Radial;                     // Q_rad
-  RadialTable Target;                         // R of the method
-  RadialTable Filter;                         // R of the antialiasing filter
-  RadialTable HighFilter;                     // the same of the high residual
+  double SmallestMetric = 0.0, LargestMetric = 0.0; // eigenvalues that the pyramid holds
+  bool Fits = false;                                // or takes the values at the bands' axes
+  DirectionFit Fit;
+  std::vector<std::array<double, 3>> Squares; // cos^2, 2 cos sin and sin^2 of the bands' axes
+  PowerForm Power;
+  RadialTable Target;     // R of the method
+  RadialTable Filter;     // R of the antialiasing filter
+  RadialTable HighFilter; // the same of the high residual
 };
 
 /**

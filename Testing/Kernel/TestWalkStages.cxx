@@ -425,7 +425,8 @@ void CheckAtAllLevels(int stage, double bound, bool biaxial = false)
     {
       for (unsigned seed = 1; seed <= (stage == 2 ? 12 : 6); ++seed)
       {
-        const testing::StageErrors errors = HWY_DYNAMIC_DISPATCH(Check)(stage, dimension, seed, biaxial);
+        const testing::StageErrors errors =
+          HWY_DYNAMIC_DISPATCH(Check)(stage, dimension, seed, biaxial);
         SCOPED_TRACE(std::to_string(dimension) + "D, " + hwy::TargetName(target) + ", seed " +
           std::to_string(seed));
         EXPECT_GT(errors.Checked, 0u);

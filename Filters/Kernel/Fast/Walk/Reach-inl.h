@@ -163,7 +163,8 @@ STAGE_INLINE Reach<N> GetReachApart(const Walk& walk, std::size_t first)
 /// Bounds of loops over corners, whatever the numbers are.
 STAGE_INLINE VI ToCorners(V place)
 {
-  return hn::ConvertTo(DI(), hn::Max(hn::Min(place, Const(FarthestCorner)), Const(-FarthestCorner)));
+  return hn::ConvertTo(
+    DI(), hn::Max(hn::Min(place, Const(FarthestCorner)), Const(-FarthestCorner)));
 }
 
 /// How an index of the lattice changes with the place.
@@ -273,11 +274,11 @@ STAGE_INLINE void GetRange(const Walk& walk, const Reach<N>& reach, int number,
 }
 
 /**
- * Cuts lattice rows out of a reach, layer by layer. What a layer has of the flow (see Narrow) is cut
- * into sections. In each the parabola is close to a line, so that what the ellipsoid around it
- * leaves of a row is a quadratic's. With W the half-width, L the half-length, and e and a what t and
- * s can be off, |t| <= W √(1 - (|s| - a)²/L²) + e implies, by (x + y)² <= (1 + d) x² + (1 + 1/d) y²
- * with d = e/W and d = a/L,
+ * Cuts lattice rows out of a reach, layer by layer. What a layer has of the flow (see Narrow) is
+ * cut into sections. In each the parabola is close to a line, so that what the ellipsoid around it
+ * leaves of a row is a quadratic's. With W the half-width, L the half-length, and e and a what t
+ * and s can be off, |t| <= W √(1 - (|s| - a)²/L²) + e implies, by (x + y)² <= (1 + d) x² + (1 +
+ * 1/d) y² with d = e/W and d = a/L,
  *
  *   t² + W (W + e) s² / (L (L + a)) <= (W + e)² + W (W + e) a / L.
  *

@@ -121,7 +121,7 @@ struct Frame
     }
   }
 
-  /// How much something with this gradient changes at most by one across the flow.
+  /// The most that something with this gradient changes by within 1 across the flow.
   STAGE_INLINE V GetChange(const V (&gradient)[N]) const
   {
     V change2 = hn::Zero(DF());
@@ -475,10 +475,11 @@ STAGE_INLINE void FitGroup(const Walk& walk, const Tile& tile, const SpanCorners
 }
 
 /**
- * The frame of a group: with a second axis that of the middle sample. Let that differ by δ at most.
- * A sample's t has then B = (m_i . e) α + (e_i . m) β more on the axes of the others, where α and β are
- * its parts on its own axes m_i and e_i. Each of the products is δ at most, and so B at most δ r W in the frame,
- * r its stretch and W the half-width.
+ * The frame of a group: with a second axis that of the middle sample, m, and e = u x m. Let those
+ * of samples, m_i, differ from m by δ at most. What a sample's t has on its own axes, α m_i + β
+ * e_i, has on those of the group also α (m_i . e) and β (e_i . m). Both products are δ at most,
+ * however far u turns, so that in the frame a surflet is wider by δ r W at most, r the stretch and
+ * W the half-width.
  */
 template <int N, class Walk>
 STAGE_INLINE void SetFrame(const Walk& walk, const Tile& tile, const SpanCorners& corners,

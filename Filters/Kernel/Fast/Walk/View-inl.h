@@ -62,8 +62,8 @@ struct Span
   }
 };
 
-/// How a span sees corners: across the flow, in its frame, they are at T - λ Step[0] - μ Step[1], in
-/// reach if within Width.
+/// How a span sees corners: across the flow, in its frame, they are at T - λ Step[0] - μ Step[1],
+/// in reach if within Width.
 template <int N>
 struct View
 {

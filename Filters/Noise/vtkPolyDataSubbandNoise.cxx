@@ -618,8 +618,8 @@ std::string vtkPolyDataSubbandNoise::Execution::Report() const
   {
     message << "\nAt " << this->Counts.Clamped << " of " << this->Counts.Points
             << " points the texture is stretched beyond the tiles' scales: noise is up to "
-            << std::round(10.0 * this->Counts.Finer) / 10.0 << " times finer or "
-            << std::round(10.0 * this->Counts.Coarser) / 10.0
+            << std::round(100.0 * this->Counts.Finer) / 100.0 << " times finer or "
+            << std::round(100.0 * this->Counts.Coarser) / 100.0
             << " times coarser than wanted. Raise TileSize, change Wavelength, or set "
                "Parameterization to Triplanar.";
   }

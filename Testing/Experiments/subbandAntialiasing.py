@@ -11,15 +11,14 @@ each pixel, weighted by a Gaussian with a deviation of one pixel (paper, equatio
 noise without and with antialiasing stands the same noise as an image of 2048^2 texels, by OpenGL's mip maps and its anisotropic
 filter with 16 samples.
 """
-import os
 import sys
 
 import numpy
+from greyPictures import write
 from steerablenoise import vtkPolyDataSubbandNoise, vtkSubbandNoiseMapper
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkObject, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
-from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTexture,
                                          vtkWindowToImageFilter)
 import vtkmodules.vtkRenderingOpenGL2
@@ -178,15 +177,8 @@ def look_to_horizon(renderer):
     camera.SetViewAngle(50)
 
 
-def write(folder, name, values):
-    grey = numpy.clip(128 + 40 * numpy.nan_to_num(values), 0, 255).astype(numpy.uint8)
-    image = vtkImageData()
-    image.SetDimensions(grey.shape[1], grey.shape[0], 1)
-    image.GetPointData().SetScalars(numpy_to_vtk(grey.ravel(), deep=True))
-    writer = vtkPNGWriter()
-    writer.SetFileName(os.path.join(folder, name + ".png"))
-    writer.SetInputData(image)
-    writer.Write()
+def write_noise(name, values):
+    write(sys.argv[1], name + ".png", 0.5 + numpy.nan_to_num(values[::-1]) / 6.4)
 
 
 SCENES = (("trapezoid", sheet(33, trapezoid, 1.0), 33, look_at_trapezoid, 0.012),
@@ -205,7 +197,7 @@ for name, mesh, side, look, wavelength in SCENES:
         print("%-9s %-8s" % (name, filter_name), "variance %.3f" % wanted[inside].var(), "  ".join(
             "%s %.4f" % (way, ((values - wanted)[inside] ** 2).mean()) for way, values in results.items()), flush=True)
         if len(sys.argv) > 1:
-            write(sys.argv[1], name + filter_name, wanted)
+            write_noise(name + filter_name, wanted)
     if len(sys.argv) > 1:
         for way, values in results.items():
-            write(sys.argv[1], name + " " + way, values)
+            write_noise(name + " " + way, values)

@@ -10,18 +10,15 @@ import os
 import sys
 
 import numpy
+from greyPictures import beside, render, write
 from steerablenoise import vtkPolyDataSubbandNoise, vtkSubbandNoiseMapper
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-from vtkmodules.vtkRenderingCore import vtkActor, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, registers the factory
 
 OUTPUT = sys.argv[1]
-GREYS = 48  # levels of a picture: few, so that noise compresses
 
 
 def sheet(columns, rows, place):
@@ -55,57 +52,6 @@ def mapper_of(mesh, vectors=None, **properties):
     return mapper
 
 
-def render(mapper, size, position=None, up=(0, 1, 0), zoom=1.0):
-    """Grey values, rows from the top; without a position flat, from above."""
-    actor, renderer, window = vtkActor(), vtkRenderer(), vtkRenderWindow()
-    actor.SetMapper(mapper)
-    renderer.AddActor(actor)
-    renderer.SetBackground(1, 1, 1)
-    camera = renderer.GetActiveCamera()
-    if position:
-        actor.GetProperty().SetAmbient(0.35)
-        actor.GetProperty().SetDiffuse(0.7)
-        camera.SetPosition(*position)
-    else:
-        actor.GetProperty().LightingOff()
-        camera.ParallelProjectionOn()
-    camera.SetViewUp(*up)
-    renderer.ResetCamera()
-    if not position:
-        bounds = mapper.GetBounds()
-        camera.SetParallelScale(0.5 * (bounds[3] - bounds[2]))
-    camera.Zoom(zoom)
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(4)
-    window.SetSize(*size)
-    window.AddRenderer(renderer)
-    window.Render()
-    grab = vtkWindowToImageFilter()
-    grab.SetInput(window)
-    grab.ReadFrontBufferOff()
-    grab.Update()
-    pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(size[1], size[0], -1)
-    return pixels[::-1, :, 0] / 255.0
-
-
-def write(name, pictures, gap=6):
-    """Pictures in a row, white between them."""
-    row = [pictures[0]]
-    for picture in pictures[1:]:
-        row += [numpy.ones((picture.shape[0], gap)), picture]
-    levels = numpy.round(numpy.hstack(row) * (GREYS - 1)) * (255.0 / (GREYS - 1))
-    image = vtkImageData()
-    image.SetDimensions(levels.shape[1], levels.shape[0], 1)
-    image.GetPointData().SetScalars(numpy_to_vtk(levels[::-1].astype(numpy.uint8).ravel(), deep=True))
-    writer = vtkPNGWriter()
-    writer.SetCompressionLevel(9)
-    writer.SetInputData(image)
-    path = os.path.join(OUTPUT, name)
-    writer.SetFileName(path)
-    writer.Write()
-    print("%-28s %4d kB" % (name, os.path.getsize(path) // 1000))
-
-
 # Fig. 3, on one square: four bands of one scale, by weights of the user's own, and their sum.
 square = sheet(1, 1, lambda u, v: (u, v, 0 * u))
 probe = vtkPolyDataSubbandNoise()
@@ -129,12 +75,12 @@ for bands in ([0], [1], [2], [3], [0, 1, 2, 3]):
     mapper = mapper_of(square, Orientations=4, Wavelength=0.05)
     mapper.SetInputArrayToProcess(1, 0, 0, 0, "own")
     pictures.append(render(mapper, (200, 200)))
-write("subband-view-bands.png", pictures)
+write(OUTPUT, "subband-view-bands.png", beside(pictures))
 
 # Fig. 6: two octaves on a trapezoid of 8 x 8 quads: plain, least squares, heuristic.
 trapezoid = sheet(8, 8, lambda u, v: ((u - 0.5) * (2.0 - v), v, 0 * u))
-write("subband-view-trapezoid.png", [render(
-    mapper_of(trapezoid, Wavelength=0.08, Octaves=2, Method=method), (400, 200)) for method in (3, 0, 2)])
+write(OUTPUT, "subband-view-trapezoid.png", beside([render(
+    mapper_of(trapezoid, Wavelength=0.08, Octaves=2, Method=method), (400, 200)) for method in (3, 0, 2)]))
 
 
 # Fig. 12, the sphere: 64 x 32 quads by longitude and latitude, from above a pole. Plain, least squares, and with planar
@@ -147,9 +93,9 @@ def longitude_latitude(u, v):
 sphere = sheet(64, 32, longitude_latitude)
 normals = numpy_to_vtk(vtk_to_numpy(sphere.GetPoints().GetData()).copy(), deep=True)
 sphere.GetPointData().SetNormals(normals)
-write("subband-view-sphere.png", [render(mapper_of(sphere, Wavelength=0.12, **options), (300, 300), (1.2, -1.2, 2.2),
-                                         (0, 0, 1), 1.4)
-                                  for options in (dict(Method=3), dict(), dict(BlendSeams=True))])
+write(OUTPUT, "subband-view-sphere.png", beside([
+    render(mapper_of(sphere, Wavelength=0.12, **options), (300, 300), (1.2, -1.2, 2.2), (0, 0, 1), 1.4)
+    for options in (dict(Method=3), dict(), dict(BlendSeams=True))]))
 
 # Fig. 13: a field of vortices on 32 x 32 quads, anisotropy 1, 2 and 4.
 field = sheet(32, 32, lambda u, v: (u, v, 0 * u))
@@ -158,7 +104,8 @@ vectors = numpy.stack((numpy.sin(2 * numpy.pi * y) + 0.3, numpy.sin(2 * numpy.pi
 array = numpy_to_vtk(vectors, deep=True)
 array.SetName("V")
 field.GetPointData().AddArray(array)
-write("subband-view-steered.png", [render(mapper_of(field, "V", Wavelength=0.035, Anisotropy=a), (330, 330)) for a in (1, 2, 4)])
+write(OUTPUT, "subband-view-steered.png", beside([
+    render(mapper_of(field, "V", Wavelength=0.035, Anisotropy=a), (330, 330)) for a in (1, 2, 4)]))
 
 if len(sys.argv) > 2:
     reader = vtkXMLPolyDataReader()
@@ -167,6 +114,6 @@ if len(sys.argv) > 2:
     smooth.SetInputConnection(reader.GetOutputPort())
     smooth.SplittingOff()
     smooth.Update()
-    write("subband-view-spot.png", [render(mapper_of(smooth.GetOutput(), Wavelength=0.1, **options), (330, 330),
-                                           (1.6, 0.5, -2.0), (0, 1, 0), 1.4)
-                                    for options in (dict(Method=3), dict(), dict(Parameterization=2))])
+    write(OUTPUT, "subband-view-spot.png", beside([
+        render(mapper_of(smooth.GetOutput(), Wavelength=0.1, **options), (330, 330), (1.6, 0.5, -2.0), (0, 1, 0), 1.4)
+        for options in (dict(Method=3), dict(), dict(Parameterization=2))]))

@@ -8,6 +8,7 @@ import os
 import sys
 
 import numpy
+from greyPictures import beside, render, write
 from paraview import simple  # noqa: F401, registers the readers' factories
 from steerablenoise import vtkImageSubbandNoiseSource, vtkPolyDataSubbandNoise
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -17,49 +18,15 @@ from vtkmodules.vtkFiltersCore import vtkPolyDataNormals, vtkTriangleFilter
 from vtkmodules.vtkFiltersModeling import vtkLoopSubdivisionFilter
 from vtkmodules.vtkFiltersSources import vtkPlaneSource, vtkSphereSource
 from vtkmodules.vtkFiltersTexture import vtkTextureMapToSphere
-from vtkmodules.vtkIOImage import vtkPNGWriter
 from vtkmodules.vtkIOLegacy import vtkPolyDataReader
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
-from vtkmodules.vtkRenderingCore import (
-    vtkActor,
-    vtkPolyDataMapper,
-    vtkRenderer,
-    vtkRenderWindow,
-    vtkWindowToImageFilter,
-)
-import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, registers the factory
+from vtkmodules.vtkRenderingCore import vtkPolyDataMapper
 
 OUTPUT, DATA = sys.argv[1], sys.argv[2]
-GREYS = 48  # levels of a picture: few, so that noise compresses
-
-
-def write(name, values):
-    """Grey levels in [0, 1], rows from the top, as a PNG."""
-    levels = numpy.clip(values, 0.0, 1.0)
-    levels = numpy.round(levels * (GREYS - 1)) * (255.0 / (GREYS - 1))
-    image = vtkImageData()
-    image.SetDimensions(values.shape[1], values.shape[0], 1)
-    flat = numpy.ascontiguousarray(levels[::-1].astype(numpy.uint8).ravel())
-    image.GetPointData().SetScalars(numpy_to_vtk(flat, deep=True))
-    writer = vtkPNGWriter()
-    writer.SetCompressionLevel(9)
-    writer.SetInputData(image)
-    writer.SetFileName(os.path.join(OUTPUT, name))
-    writer.Write()
-    print("%-28s %4d kB" % (name, os.path.getsize(os.path.join(OUTPUT, name)) // 1000))
 
 
 def grey(noise, deviations=2.5):
     return 0.5 + noise / (2.0 * deviations)
-
-
-def beside(pictures, gap=6):
-    """Pictures in a row, white between them."""
-    white = numpy.ones((pictures[0].shape[0], gap))
-    row = [pictures[0]]
-    for picture in pictures[1:]:
-        row += [white, picture]
-    return numpy.hstack(row)
 
 
 def subband(mesh, vectors=None, **properties):
@@ -78,8 +45,8 @@ def values(mesh, name="SubbandNoise"):
     return vtk_to_numpy(mesh.GetPointData().GetArray(name))
 
 
-def render(mesh, position, up, zoom, size):
-    """Lit surface coloured by its noise."""
+def noise_mapper(mesh):
+    """Colours a surface by its noise."""
     table = vtkLookupTable()
     table.SetNumberOfTableValues(256)
     for i in range(256):
@@ -91,32 +58,7 @@ def render(mesh, position, up, zoom, size):
     mapper.SelectColorArray("SubbandNoise")
     mapper.SetScalarRange(-2.5, 2.5)
     mapper.InterpolateScalarsBeforeMappingOn()
-    actor = vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetAmbient(0.35)
-    actor.GetProperty().SetDiffuse(0.7)
-    renderer = vtkRenderer()
-    renderer.SetBackground(1.0, 1.0, 1.0)
-    renderer.AddActor(actor)
-    camera = renderer.GetActiveCamera()
-    camera.SetPosition(*position)
-    camera.SetFocalPoint(0.0, 0.0, 0.0)
-    camera.SetViewUp(*up)
-    renderer.ResetCamera()
-    camera.Zoom(zoom)
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(4)
-    window.SetSize(*size)
-    window.AddRenderer(renderer)
-    window.Render()
-    grab = vtkWindowToImageFilter()
-    grab.SetInput(window)
-    grab.ReadFrontBufferOff()
-    grab.Update()
-    image = grab.GetOutput()
-    pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(size[1], size[0], -1)
-    return pixels[::-1, :, 0] / 255.0
+    return mapper
 
 
 def refine(mesh, times):
@@ -172,7 +114,7 @@ def figure_3():
     bands = vtk_to_numpy(source.GetOutput().GetPointData().GetScalars()).reshape(256, 256, 4)[:128, :128]
     total = bands.sum(axis=2)
     scale = 1.0 / total.std()
-    write("subband-bands.png", beside([grey(bands[:, :, i] * scale, 1.6) for i in range(4)] + [grey(total * scale)]))
+    write(OUTPUT, "subband-bands.png", beside([grey(bands[:, :, i] * scale, 1.6) for i in range(4)] + [grey(total * scale)]))
 
 
 def figure_6():
@@ -203,7 +145,7 @@ def figure_6():
         pictures.append(numpy.where(inside, grey(sampled, 3.2), 1.0))
     # Above one another, as rows of the page.
     white = numpy.ones((6, pictures[0].shape[1]))
-    write("subband-trapezoid.png", numpy.vstack([pictures[0], white, pictures[1], white, pictures[2]]))
+    write(OUTPUT, "subband-trapezoid.png", numpy.vstack([pictures[0], white, pictures[1], white, pictures[2]]))
 
 
 def figure_13():
@@ -222,7 +164,7 @@ def figure_13():
     for anisotropy in (1.0, 2.0, 4.0):
         noise = subband(mesh, "field", Wavelength=0.05, Anisotropy=anisotropy, AntiAlias=0, TileSize=512)
         pictures.append(grey(values(noise).reshape(points, points)[::-1][:300, :300]))
-    write("subband-steered.png", beside(pictures))
+    write(OUTPUT, "subband-steered.png", beside(pictures))
 
 
 def meshes():
@@ -234,8 +176,8 @@ def meshes():
         pictures = []
         for choice in (plain, properties):
             noise = subband(mesh, vectors if choice is properties or first is None else None, **choice)
-            pictures.append(render(noise, position, up, zoom, size))
-        write(name, beside(pictures))
+            pictures.append(render(noise_mapper(noise), size, position, up, zoom))
+        write(OUTPUT, name, beside(pictures))
 
     compare("subband-spot.png", refine(read("spot.vtp"), 3), (1.6, 0.5, -2.0), (0, 1, 0), 1.4, Wavelength=0.1)
     compare("subband-face.png", refine(read("fran_cut.vtk"), 3), (1.0, 0.1, 0.45), (0, 1, 0), 1.4, Wavelength=0.012)

@@ -203,8 +203,9 @@ STAGE_INLINE IndexAxis GetIndexAxis(const Walk& walk, const Reach<N>& reach, int
   }
   result.Rate = Dot(gradient, reach.U);
   result.Bend = Dot(gradient, reach.Bend);
-  result.Width = hn::Mul(
-    hn::Add(reach.LargestWidth, GetLooseness(walk, reach)), reach.Across.GetChange(gradient));
+  // Along the flow no width is left: the slack keeps intervals of s from being empty by rounding.
+  result.Width = hn::MulAdd(hn::Add(reach.LargestWidth, GetLooseness(walk, reach)),
+    reach.Across.GetChange(gradient), Const(Slack));
   result.InverseRate = Inverse(result.Rate);
   // Window and jitter are boxes of places; oblique indices need √3 times as many to cover them.
   const float more = walk.IsOblique() ? 1.75f : 1.0f;

@@ -259,15 +259,21 @@ private:
 
   // ---- samples apart ----------------------------------------------------------------------------
 
-  /// Every sample of a register goes along the same rows, counted from its own cell, by itself.
-  STAGE_INLINE void AddApart(std::size_t r)
+  /// Rows that samples apart have in common.
+  struct RowsApart
   {
-    this->WithKind(
-      [&](auto kind) HWY_ATTR { this->template AddSurfletsApart<decltype(kind)>(r); });
-  }
+    std::size_t Count = 0;
+    /// The first corner of each lane, the bits of its row, and the corners of the lane that has
+    /// most.
+    HWY_ALIGN float First[ListSize][Lanes];
+    HWY_ALIGN std::uint32_t Hash[ListSize][Lanes];
+    float Y[ListSize];
+    float Z[ListSize];
+    int Corners[ListSize];
+  };
 
-  template <class SurfletsKind>
-  HWY_NOINLINE void AddSurfletsApart(std::size_t r)
+  /// Every sample of a register goes along the same rows, counted from its own cell, by itself.
+  HWY_NOINLINE void AddApart(std::size_t r)
   {
     const std::size_t from = this->Samples->First[r];
     VU origin[N];
@@ -276,13 +282,11 @@ private:
       origin[axis] = hn::LoadU(DU(), this->Setup.Block.Cell[axis] + from);
     }
     const Reach<N> reach = GetReachApart<N>(this->Setup, from);
-    const Sample<N> sample(this->Setup.Setup, this->Setup.Block, from, origin);
-    SurfletSums<N> sums = this->GetTotal(r);
-    std::size_t visited = 0;
     const IndexAxis axisX = GetIndexAxis(this->Setup, reach, 0);
     const IndexAxis axisY = GetIndexAxis(this->Setup, reach, 1);
     const V length = hn::Add(reach.Length, Const(this->Setup.Setup.JitterRadius));
     RowCutter<N, WalkSetup<N, Kind>> cutter(this->Setup, reach);
+    RowsApart rows;
     // The rows of a layer from the least of `first` to the greatest of `last`.
     const auto addRows = [&](V low, V high, int z, VU hashZ) HWY_ATTR
     {
@@ -297,32 +301,24 @@ private:
       const int lastY = ToCorner(GreatestLane(hn::IfThenElse(none, Const(-1e9f), last)));
       for (int y = ToCorner(LeastLane(hn::IfThenElse(none, Const(1e9f), first))); y <= lastY; ++y)
       {
-        const V rowY = Const(static_cast<float>(y));
-        const V rowZ = Const(static_cast<float>(z));
         V begin = axisX.BoxLow;
         V end = axisX.BoxHigh;
         if (this->Setup.Params.AnisotropicWeight)
         {
-          cutter.Cut(rowY, begin, end);
+          cutter.Cut(Const(static_cast<float>(y)), begin, end);
         }
-        const VU hashY = HashAxis(this->Setup, origin, 1, hn::Set(DI(), y), hashZ);
-        V x = hn::Max(hn::Ceil(begin), Const(-FarthestCorner));
+        begin = hn::Max(hn::Ceil(begin), Const(-FarthestCorner));
         end = hn::Min(hn::Floor(end), Const(FarthestCorner));
-        for (; !hn::AllFalse(DF(), hn::Le(x, end)); x = hn::Add(x, Const(1.0f)))
+        if (rows.Count == ListSize)
         {
-          // A sample that has no corner here any more is too far from this one.
-          V offset[N];
-          offset[0] = x;
-          offset[1] = rowY;
-          if constexpr (N == 3)
-          {
-            offset[2] = rowZ;
-          }
-          const VU hash = HashJoinAxes(HashAxis(this->Setup, origin, 0, ToCorners(x), hashY));
-          AddSurflet<SurfletsKind>(
-            this->Setup, sample, Describe(this->Setup, offset, hash), sums);
-          ++visited;
+          this->AddRowsApart(r, origin, rows);
         }
+        const std::size_t row = rows.Count++;
+        hn::Store(begin, DF(), rows.First[row]);
+        hn::Store(HashAxis(this->Setup, origin, 1, hn::Set(DI(), y), hashZ), DU(), rows.Hash[row]);
+        rows.Y[row] = static_cast<float>(y);
+        rows.Z[row] = static_cast<float>(z);
+        rows.Corners[row] = static_cast<int>(GreatestLane(hn::Sub(end, begin))) + 1;
       }
     };
     const VU seed = hn::Set(DU(), this->Setup.Octave.Seed);
@@ -348,8 +344,44 @@ private:
         addRows(low, high, z, HashAxis(this->Setup, origin, 2, hn::Set(DI(), z), seed));
       }
     }
+    this->AddRowsApart(r, origin, rows);
+  }
+
+  /// Adds the corners of these rows, and forgets them.
+  HWY_NOINLINE void AddRowsApart(std::size_t r, const VU (&origin)[N], RowsApart& rows)
+  {
+    this->WithKind([&](auto kind) HWY_ATTR
+      { this->template AddSurfletsApart<decltype(kind)>(r, origin, rows); });
+    rows.Count = 0;
+  }
+
+  template <class SurfletsKind>
+  HWY_NOINLINE void AddSurfletsApart(std::size_t r, const VU (&origin)[N], const RowsApart& rows)
+  {
+    const Sample<N> sample(
+      this->Setup.Setup, this->Setup.Block, this->Samples->First[r], origin);
+    SurfletSums<N> sums = this->GetTotal(r);
+    for (std::size_t row = 0; row < rows.Count; ++row)
+    {
+      V offset[N];
+      offset[0] = hn::Load(DF(), rows.First[row]);
+      offset[1] = Const(rows.Y[row]);
+      if constexpr (N == 3)
+      {
+        offset[2] = Const(rows.Z[row]);
+      }
+      const VU hash = hn::Load(DU(), rows.Hash[row]);
+      for (int i = 0; i < rows.Corners[row]; ++i)
+      {
+        // A sample that has no corner here any more is too far from this one.
+        const VU bits = HashJoinAxes(HashAxis(this->Setup, origin, 0, ToCorners(offset[0]), hash));
+        AddSurflet<SurfletsKind>(this->Setup, sample, Describe(this->Setup, offset, bits), sums);
+        offset[0] = hn::Add(offset[0], Const(1.0f));
+      }
+      this->Visited += static_cast<std::size_t>(std::max(rows.Corners[row], 0)) *
+        this->Samples->GetCount(r);
+    }
     this->SetTotal(r, sums);
-    this->Visited += visited * this->Samples->GetCount(r);
   }
 
   /// Adds those corners of the list that reach the samples of a span to their sums.

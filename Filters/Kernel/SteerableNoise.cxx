@@ -16,10 +16,8 @@
 #include <stdexcept>
 #include <vector>
 
-// Highway includes this file once more for every SIMD level and picks one at run time. Levels that
-// cannot hold registers in arrays (scalable vectors) are left out, and so are near-copies of others.
-#define HWY_DISABLED_TARGETS \
-  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
+// Highway includes this file once more for every SIMD level and picks one at run time.
+#include "SimdTargets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "SteerableNoise.cxx"
 #include <hwy/foreach_target.h>

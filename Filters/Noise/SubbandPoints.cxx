@@ -251,14 +251,11 @@ bool SubbandPointWeights::AddPoint(SubbandPlanePoints& plane, std::size_t which,
     return false;
   }
   // The range of the factors, from the range of eigenvalues.
-  const steerable::SubbandParameters& pyramid = lookup.Layout->Pyramid;
-  const double smallest = std::pow(pyramid.CenterFrequency(), -2.0);
-  const double largest = std::ldexp(smallest, 2 * (pyramid.Scales - 1));
   const double mean = 0.5 * metric.trace();
   const double radius = std::hypot(0.5 * (metric(0, 0) - metric(1, 1)), metric(0, 1));
   const double low = std::max(mean - radius, 1e-12 * mean);
-  const double coarser = std::sqrt(smallest / low);
-  const double finer = std::sqrt((mean + radius) / largest);
+  const double coarser = std::sqrt(lookup.Weights->GetSmallestMetric() / low);
+  const double finer = std::sqrt((mean + radius) / lookup.Weights->GetLargestMetric());
   counts.Coarser = std::max(counts.Coarser, coarser);
   counts.Finer = std::max(counts.Finer, finer);
   return std::max(coarser, finer) > std::exp2(ClampedOctaves);

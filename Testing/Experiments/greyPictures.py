@@ -13,6 +13,17 @@ import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, registers the factory
 GREYS = 48  # levels of a picture: few, so that noise compresses
 
 
+def pixels_of(window):
+    """Rows from the bottom, columns, red, green and blue as bytes."""
+    window.Render()
+    grab = vtkWindowToImageFilter()
+    grab.SetInput(window)
+    grab.ReadFrontBufferOff()
+    grab.Update()
+    width, height = window.GetSize()
+    return vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(height, width, 3)
+
+
 def render(mapper, size, position=None, up=(0, 1, 0), zoom=1.0):
     """Seen from a position towards the middle, lit; without one flat, from above, as high as the picture."""
     actor, renderer, window = vtkActor(), vtkRenderer(), vtkRenderWindow()
@@ -37,13 +48,7 @@ def render(mapper, size, position=None, up=(0, 1, 0), zoom=1.0):
     window.SetMultiSamples(4)
     window.SetSize(*size)
     window.AddRenderer(renderer)
-    window.Render()
-    grab = vtkWindowToImageFilter()
-    grab.SetInput(window)
-    grab.ReadFrontBufferOff()
-    grab.Update()
-    pixels = vtk_to_numpy(grab.GetOutput().GetPointData().GetScalars()).reshape(size[1], size[0], -1)
-    return pixels[::-1, :, 0] / 255.0
+    return pixels_of(window)[::-1, :, 0] / 255.0
 
 
 def beside(pictures, gap=6):

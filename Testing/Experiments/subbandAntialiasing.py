@@ -14,13 +14,12 @@ filter with 16 samples.
 import sys
 
 import numpy
-from greyPictures import write
+from greyPictures import pixels_of, write
 from steerablenoise import vtkPolyDataSubbandNoise, vtkSubbandNoiseMapper
-from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkObject, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
-from vtkmodules.vtkRenderingCore import (vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTexture,
-                                         vtkWindowToImageFilter)
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTexture
 import vtkmodules.vtkRenderingOpenGL2
 
 vtkObject.GlobalWarningDisplayOff()  # of weights that are not from the surface they are on
@@ -62,13 +61,7 @@ class Scene:
         self.renderer.ResetCameraClippingRange()
 
     def bytes(self):
-        self.window.Render()
-        grabbed = vtkWindowToImageFilter()
-        grabbed.SetInput(self.window)
-        grabbed.ReadFrontBufferOff()
-        grabbed.Update()
-        width, height = self.window.GetSize()
-        return vtk_to_numpy(grabbed.GetOutput().GetPointData().GetScalars()).reshape(height, width, 3).astype(int)
+        return pixels_of(self.window).astype(int)
 
     def noise(self):
         """NaN where there is none."""

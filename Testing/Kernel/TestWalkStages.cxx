@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Copyright (c) SteerableNoise contributors
 // SPDX-License-Identifier: BSD-3-Clause
 /// The stages of a walk one by one, beside all corners of a box in double, at every SIMD level.
-// The levels of SteerableNoise.cxx.
-#define HWY_DISABLED_TARGETS \
-  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
+// Before Highway's headers.
+#include "SimdTargets.h"
+
 #include "KernelTestHelpers.h"
 #include "LatticeHash.h"
 #include "SteerableNoise.h"
@@ -193,9 +193,9 @@ bool IsOnItsRow(
   V low = Const(-1e9f);
   V high = Const(1e9f);
   const IndexAxis axis = GetIndexAxis(walk, reach, N - 1);
-  V begin = hn::Neg(reach.Length);
-  V end = reach.Length;
-  Narrow(walk, reach, N - 1, axis, Const(static_cast<float>(corner[N - 1])), begin, end);
+  V begin;
+  V end;
+  GetInterval(walk, reach, N - 1, axis, Const(static_cast<float>(corner[N - 1])), begin, end);
   RowCutter<N, WalkT> cutter(walk, reach);
   cutter.SetLayer(Const(static_cast<float>(corner[2])), begin, end);
   cutter.Cut(Const(static_cast<float>(corner[1])), low, high);

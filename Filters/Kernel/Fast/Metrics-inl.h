@@ -206,15 +206,8 @@ HWY_NOINLINE void ProjectOnSurface(
   const VD zero = hn::Zero(DD());
   for (std::size_t i = 0; i < count; i += half)
   {
-    const float* from[2] = { vectors + 3 * i, normals + 3 * i };
-    if (i + half > count)
-    {
-      for (int k = 0; k < 2; ++k)
-      {
-        std::copy(from[k], from[k] + 3 * (count - i), tail[k]);
-        from[k] = tail[k];
-      }
-    }
+    const float* from[2] = { GetTuples(vectors + 3 * i, count - i, tail[0]),
+      GetTuples(normals + 3 * i, count - i, tail[1]) };
     VD v[2][3];
     for (int k = 0; k < 2; ++k)
     {

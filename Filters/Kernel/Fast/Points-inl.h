@@ -32,12 +32,7 @@ HWY_NOINLINE void LocatePoints(const NoiseSetup& setup, const OctaveSetup& octav
   const VD rounding = hn::Set(DD(), setup.CellRounding);
   for (std::size_t i = 0; i < count; i += half)
   {
-    const double* from = positions + 3 * i;
-    if (i + half > count)
-    {
-      std::copy(from, positions + 3 * count, tail);
-      from = tail;
-    }
+    const double* from = GetTuples(positions + 3 * i, count - i, tail);
     VD p[3];
     hn::LoadInterleaved3(DD(), from, p[0], p[1], p[2]);
     for (int axis = 0; axis < N; ++axis)

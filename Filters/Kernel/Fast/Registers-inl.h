@@ -139,6 +139,18 @@ HWY_INLINE V Inverse(V v)
   return hn::Div(Const(1.0f), hn::CopySign(hn::Max(hn::Abs(v), Const(1e-6f)), v));
 }
 
+/// The next tuples of three; where fewer are `left` than `tail` has room for, a copy with room.
+template <typename T, std::size_t Room>
+HWY_INLINE const T* GetTuples(const T* from, std::size_t left, T (&tail)[Room])
+{
+  if (3 * left >= Room)
+  {
+    return from;
+  }
+  std::copy(from, from + 3 * left, tail);
+  return tail;
+}
+
 template <std::size_t Axes, std::size_t Room>
 HWY_INLINE void LoadAll(
   const float (&arrays)[Axes][Room], std::size_t i, V (&values)[Axes])

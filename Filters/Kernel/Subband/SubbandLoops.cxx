@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 // Highway includes this file once more for every SIMD level and picks one at run time.
-#define HWY_DISABLED_TARGETS \
-  (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSSE3 | HWY_AVX3_DL)
+#include "SimdTargets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "Subband/SubbandLoops.cxx"
 #include <hwy/foreach_target.h>
@@ -424,6 +424,20 @@ HWY_EXPORT(SumTilesHere);
 namespace
 {
 constexpr double Pi = 3.14159265358979323846;
+
+std::uint64_t BitsOf(double q)
+{
+  std::uint64_t bits;
+  std::memcpy(&bits, &q, sizeof bits);
+  return bits;
+}
+
+double FromBits(std::uint64_t bits)
+{
+  double q;
+  std::memcpy(&q, &bits, sizeof q);
+  return q;
+}
 } // namespace
 
 void RadialTable::Fill(

@@ -14,27 +14,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <vector>
 
 namespace steerable
 {
 constexpr int MaximumScales = 6;
-
-inline std::uint64_t BitsOf(double q)
-{
-  std::uint64_t bits;
-  std::memcpy(&bits, &q, sizeof bits);
-  return bits;
-}
-
-inline double FromBits(std::uint64_t bits)
-{
-  double q;
-  std::memcpy(&q, &bits, sizeof q);
-  return q;
-}
 
 /// Numbers for registers, which read them fastest where they begin at a multiple of their size.
 struct alignas(64) AlignedNumbers

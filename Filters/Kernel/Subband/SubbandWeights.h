@@ -109,6 +109,9 @@ public:
   bool ClampMetric(Eigen::Matrix2d& metric) const;
 
   const SubbandWeightParameters& GetParameters() const { return this->Parameters; }
+  /// Eigenvalues of metrics that the pyramid holds, those of ClampMetric.
+  double GetSmallestMetric() const { return this->SmallestMetric; }
+  double GetLargestMetric() const { return this->LargestMetric; }
 
 private:
   // gamma and beta alike: the values of a table along each direction, joined to weights of bands.

@@ -249,6 +249,19 @@ STAGE_INLINE void Narrow(const Walk& walk, const Reach<N>& reach, int number,
   }
 }
 
+/// The s at which the index of that axis can be `index`.
+template <int N, class Walk>
+STAGE_INLINE void GetInterval(const Walk& walk, const Reach<N>& reach, int number,
+  const IndexAxis& axis, V index, V& low, V& high)
+{
+  high = hn::Add(reach.Length, Const(walk.Setup.JitterRadius));
+  low = hn::Neg(high);
+  if (walk.Params.AnisotropicWeight)
+  {
+    Narrow(walk, reach, number, axis, index, low, high);
+  }
+}
+
 /// Indices that the reach has for s in [low, high]; none if that is empty.
 template <int N, class Walk>
 STAGE_INLINE void GetRange(const Walk& walk, const Reach<N>& reach, int number,

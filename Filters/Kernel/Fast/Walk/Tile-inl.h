@@ -218,7 +218,6 @@ struct Group
   /// What surflets are wider for frames that differ from this one, see SetFrame.
   V FrameRest;
 
-  V BendLength;
   V AlongStep[2];
   /// Sums over the steps: of their lengths, and the largest v UStep.
   V Places;
@@ -239,7 +238,6 @@ struct Group
   STAGE_INLINE void SetBounds(const Extent& extent)
   {
     const V half = Const(0.5f);
-    this->BendLength = hn::Sqrt(Dot(this->Bend, this->Bend));
     this->Places = this->Turn = this->Change = hn::Zero(DF());
     V bendTurn = hn::Zero(DF());
     for (int k = 0; k < 2; ++k)
@@ -255,7 +253,7 @@ struct Group
     const V mostSag = Const(0.5f * mostAlong * mostAlong);
     const V turn = hn::Add(this->Turn, this->DirectionRest);
     const V change = hn::Add(this->Change, this->BendRest);
-    const V kappa = hn::Add(this->BendLength, change);
+    const V kappa = hn::Add(Length(this->Bend), change);
     const V places = hn::Add(this->Places, this->PlaceRest);
     const V mostAcross = hn::MulAdd(mostSag, kappa, Const(extent.HalfWidth));
     this->MostTurn = hn::MulAdd(mostSag, bendTurn,

@@ -180,12 +180,9 @@ private:
       const int lastZ = ToCorner(hn::GetLane(last));
       for (int z = ToCorner(hn::GetLane(first)); z <= lastZ; z += static_cast<int>(Lanes))
       {
-        V low = hn::Neg(length);
-        V high = length;
-        if (this->Setup.Params.AnisotropicWeight)
-        {
-          Narrow(this->Setup, reach, 2, axisZ, Ramp(static_cast<float>(z)), low, high);
-        }
+        V low;
+        V high;
+        GetInterval(this->Setup, reach, 2, axisZ, Ramp(static_cast<float>(z)), low, high);
         GetRange(this->Setup, reach, 1, axisY, low, high, first, last);
         hn::Store(ToCorners(first), DI(), firsts);
         hn::Store(ToCorners(last), DI(), lasts);
@@ -209,7 +206,6 @@ private:
     const IndexAxis axis = GetIndexAxis(this->Setup, reach, 0);
     const IndexAxis axisLast = GetIndexAxis(this->Setup, reach, N - 1);
     RowCutter<N, WalkSetup<N, Kind>> cutter(this->Setup, reach);
-    const V length = hn::Add(reach.Length, Const(this->Setup.Setup.JitterRadius));
     for (std::size_t i = rows; i % Lanes != 0; ++i)
     {
       rowY[i] = rowZ[i] = 0; // lanes that nobody looks at
@@ -222,9 +218,9 @@ private:
       {
         const V y = hn::ConvertTo(DF(), hn::LoadU(DI(), rowY + i));
         const V z = hn::ConvertTo(DF(), hn::LoadU(DI(), rowZ + i));
-        V begin = hn::Neg(length);
-        V end = length;
-        Narrow(this->Setup, reach, N - 1, axisLast, N == 2 ? y : z, begin, end);
+        V begin;
+        V end;
+        GetInterval(this->Setup, reach, N - 1, axisLast, N == 2 ? y : z, begin, end);
         cutter.SetLayer(z, begin, end);
         cutter.Cut(y, low, high);
       }
@@ -335,12 +331,9 @@ private:
       const int lastZ = ToCorner(GreatestLane(last));
       for (int z = ToCorner(LeastLane(first)); z <= lastZ; ++z)
       {
-        V low = hn::Neg(length);
-        V high = length;
-        if (this->Setup.Params.AnisotropicWeight)
-        {
-          Narrow(this->Setup, reach, 2, axisZ, Const(static_cast<float>(z)), low, high);
-        }
+        V low;
+        V high;
+        GetInterval(this->Setup, reach, 2, axisZ, Const(static_cast<float>(z)), low, high);
         addRows(low, high, z, HashAxis(this->Setup, origin, 2, hn::Set(DI(), z), seed));
       }
     }
